@@ -1,0 +1,10 @@
+/// All of dermis but the EXR files.
+#pragma once
+
+#include "dermis/device.hpp"
+#include "dermis/error.hpp"
+#include "dermis/frame.hpp"
+#include "dermis/plan.hpp"
+#include "dermis/profile.hpp"
+#include "dermis/taps.hpp"
+#include "dermis/version.hpp"

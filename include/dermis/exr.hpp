@@ -1,0 +1,136 @@
+/// OpenEXR files in and out (target dermis_exr): pictures with all their channels, roles by channel name, and the
+/// camera.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "dermis/frame.hpp"
+
+namespace dermis::exr {
+
+/// A rectangle in pixels: (x, y) is its upper left corner.
+struct Window {
+  int x = 0;
+  int y = 0;
+  int width = 0;
+  int height = 0;
+  bool operator==(const Window&) const = default;
+};
+
+/// One channel of a picture.
+struct Channel {
+  std::string name;         ///< as in the file, for instance "ViewLayer.DiffDir.R"
+  Format format;            ///< f16, f32 or u32
+  std::size_t byte_offset;  ///< from the start of a pixel
+};
+
+/// All channels and attributes of a flat, single-part EXR file; the pixels lie interleaved in the formats of the file,
+/// so that what is not touched is written back bit for bit.
+class Picture {
+ public:
+  /// Reads a file. Throws Error(input_missing) if it is not there, Error(input_unsupported) if it is damaged, not EXR,
+  /// deep, or has several parts, or is larger than 65536 pixels on a side or 1024 channels.
+  static Picture read(const std::filesystem::path& path);
+
+  /// A picture without channels, black outside `data`.
+  Picture(Window data, Window display);
+  ~Picture();
+  Picture(Picture&&) noexcept;
+  Picture& operator=(Picture&&) noexcept;
+
+  int width() const;   ///< of the data window: the pixels there are
+  int height() const;  ///< of the data window
+  Window data_window() const;
+  Window display_window() const;
+  double pixel_aspect() const;  ///< width of a pixel / its height
+  std::string compression() const;
+  std::span<const Channel> channels() const;
+  const Channel* find(std::string_view name) const;  ///< nullptr if there is none
+
+  /// The values of one channel, as float.
+  std::vector<float> plane(std::string_view name) const;
+
+  /// Adds channels of one format, filled with zeros; a channel that is there already keeps its format and values.
+  /// Invalidates views.
+  void add_channels(std::span<const std::string> names, Format format);
+
+  /// A view of three channels (or one) in the picture's own pixels. Throws Error(input_unsupported) if they are not of
+  /// one format or not evenly spaced.
+  Image view(std::span<const std::string> names) const;
+  OutputImage view_to_write(std::span<const std::string> names);
+
+  /// Sets a text attribute.
+  void set_attribute(std::string_view name, std::string_view value);
+
+  /// Writes to a temporary file beside `path`, then renames it. `compression` is an OpenEXR name ("zip", "piz", "dwaa",
+  /// ...); if empty that of the file that was read, or "zip" if that loses data. Throws Error(output), leaving what was
+  /// at `path`.
+  void write(const std::filesystem::path& path, std::string_view compression = {}) const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// What a channel is for.
+enum class Role { light, albedo, depth, position, normal, material, mask, specular, beauty };
+inline constexpr std::array all_roles = {Role::light,    Role::albedo, Role::depth,    Role::position, Role::normal,
+                                         Role::material, Role::mask,   Role::specular, Role::beauty};
+
+std::string_view name_of(Role role);
+
+/// The channels of one role: a sum of groups of three (RGB or XYZ) or one.
+using ChannelSum = std::vector<std::vector<std::string>>;
+
+/// Which channels of a picture play which role.
+struct Roles {
+  std::string layer;  ///< the view layer, without the dot; may be empty
+  std::array<ChannelSum, all_roles.size()> channels;
+
+  const ChannelSum& operator[](Role role) const { return channels[static_cast<std::size_t>(role)]; }
+  ChannelSum& operator[](Role role) { return channels[static_cast<std::size_t>(role)]; }
+  bool has(Role role) const { return !(*this)[role].empty(); }
+};
+
+/// Finds roles by the names that Blender and Cycles give (2.8 to 5.x), in any case. Each override is "role=channels":
+/// channels are full names separated by commas (1 or 3), or one prefix that stands for its .R .G .B or .X .Y .Z (or
+/// single) channels; "+" adds several. `layer` picks a view layer if there are several; the first one if empty. Throws
+/// Error(usage) for a malformed override, Error(role_missing) that lists the channels there are if one names a channel
+/// that is not.
+Roles find_roles(const Picture& picture, std::span<const std::string> overrides = {}, std::string_view layer = {});
+
+/// The summed values of a role, packed, as float; empty if the picture does not have it.
+std::vector<float> load(const Picture& picture, const Roles& roles, Role role);
+
+/// Throws Error(role_missing) that names the role and lists the channels there are, if the picture does not have it.
+void require(const Picture& picture, const Roles& roles, Role role);
+
+/// What the caller says of the camera; at most one of fov and focal.
+struct CameraHint {
+  std::optional<double> fov_deg = {};   ///< horizontal, of the display window; in (0, 180)
+  std::optional<double> focal_px = {};  ///< along x; > 0
+  std::optional<double> orthographic_px_per_unit = {};
+};
+
+/// A camera and where it comes from.
+struct FoundCamera {
+  Camera camera;              ///< in pixels of the data window
+  std::string source;         ///< "--fov", "--focal-px", "--px-per-unit" or "position and depth"
+  double residual_units = 0;  ///< largest distance of a recovered point from its position, if recovered
+};
+
+/// The camera of a picture: from the hint, else by linear least squares from position and depth: P = C + Z x u + Z y v
+/// + Z w (perspective) or P = C + x u + y v + Z n (orthographic), whichever fits; u and v give both focal lengths, w
+/// the centre. Pixels of the background and those that the fit finds off by more than a pixel (antialiased edges) are
+/// left out. Throws Error(role_missing) if neither works, Error(usage) if the hint is not finite or out of range.
+FoundCamera find_camera(const Picture& picture, const Roles& roles, const CameraHint& hint = {});
+
+}  // namespace dermis::exr

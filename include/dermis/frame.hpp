@@ -1,0 +1,93 @@
+/// Where the pixels of one G-buffer lie, and the camera that saw them.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+struct _cl_mem;
+using cl_mem = struct _cl_mem*;
+
+namespace dermis {
+
+/// How one value is stored.
+enum class Format : std::uint8_t { f16, f32, u8, u16, u32 };
+
+constexpr std::size_t bytes_of(Format format) {
+  switch (format) {
+    case Format::u8:
+      return 1;
+    case Format::f16:
+    case Format::u16:
+      return 2;
+    default:
+      return 4;
+  }
+}
+
+/// How the values of an image follow each other. A stride of 0 means packed: channels of a pixel
+/// side by side, then pixels, then rows. Strides may be negative; the offset is that of pixel (0, 0).
+struct Layout {
+  Format format = Format::f32;
+  std::ptrdiff_t channel_stride = 0;  ///< bytes
+  std::ptrdiff_t pixel_stride = 0;    ///< bytes
+  std::ptrdiff_t row_stride = 0;      ///< bytes
+  std::size_t offset = 0;             ///< bytes from the pointer or the start of the buffer
+};
+
+/// An image to read; owns nothing. Set `host` or `buffer`, or neither if the frame has no such image.
+struct Image {
+  const void* host = nullptr;
+  cl_mem buffer = nullptr;
+  Layout layout = {};
+
+  explicit operator bool() const { return host != nullptr || buffer != nullptr; }
+};
+
+/// An image to write; owns nothing. It may be the same memory as an image to read.
+struct OutputImage {
+  void* host = nullptr;
+  cl_mem buffer = nullptr;
+  Layout layout = {};
+
+  explicit operator bool() const { return host != nullptr || buffer != nullptr; }
+};
+
+/// The projection, in pixels of the frame: x to the right, y down, pixel (i, j) centred on (i + 0.5, j + 0.5).
+/// A point at view depth z projects to center + focal_px * (X, Y) / z if perspective, and to
+/// center + px_per_unit * (X, Y) if orthographic.
+struct Camera {
+  enum class Projection { perspective, orthographic };
+
+  Projection projection = Projection::perspective;
+  double scale_x = 0;   ///< focal length in px, or px per scene unit; > 0
+  double scale_y = 0;   ///< differs from scale_x where pixels are not square
+  double center_x = 0;  ///< px from the frame's left edge
+  double center_y = 0;  ///< px from the frame's top edge
+
+  static Camera perspective(double focal_x_px, double focal_y_px, double center_x_px, double center_y_px) {
+    return {Projection::perspective, focal_x_px, focal_y_px, center_x_px, center_y_px};
+  }
+  static Camera orthographic(double px_per_unit_x, double px_per_unit_y) {
+    return {Projection::orthographic, px_per_unit_x, px_per_unit_y, 0, 0};
+  }
+};
+
+/// One G-buffer. All images have the frame's size. A pixel whose depth is not finite, not above 0 (perspective) or
+/// 1e9 and more is background, and so is one whose light is not finite: it neither gives nor takes light.
+struct Frame {
+  int width = 0;
+  int height = 0;
+  Image light = {};     ///< RGB, f16 or f32: diffuse light, with or without the albedo (Options::lighting)
+  Image albedo = {};    ///< RGB, f16 or f32
+  Image depth = {};     ///< 1 channel, f16 or f32: distance along the view axis, scene units
+  Image material = {};  ///< 1 channel, any format: material id; a fractional id belongs to no material
+  Image mask = {};      ///< 1 channel, f16 or f32: width of the profile, 0 (no scattering) .. 1 (the whole profile)
+  Image beauty = {};    ///< RGB, f16 or f32: the picture with all its light; needed for `result`
+  Camera camera = {};
+  double mm_per_unit = 1;  ///< millimetres per scene unit
+
+  OutputImage scattered = {};  ///< RGB, f16 or f32: light after scattering, before the albedo is put back
+  OutputImage result = {};     ///< RGB, f16 or f32: `beauty` with its diffuse light scattered
+};
+
+}  // namespace dermis

@@ -1,0 +1,49 @@
+/// The filter again, in plain scalar double precision, to check the kernels against. Shares no code with them.
+#pragma once
+
+#include <functional>
+#include <span>
+
+#include "dermis/frame.hpp"
+#include "dermis/oracle/picture.hpp"
+#include "dermis/plan.hpp"
+#include "dermis/taps.hpp"
+
+namespace dermis::oracle {
+
+/// A material as the oracle needs it. `radial` and `cdf` are used by surface_integral only; of `taps` it uses only the
+/// radii, to tell which kernels are narrower than half a pixel.
+struct Material {
+  int id = 0;
+  bool width_follows_albedo = false;
+  Taps taps;
+  std::function<double(int channel, double r_mm)> radial;  ///< R(r), 1/mm^2
+  std::function<double(int channel, double r_mm)> cdf;     ///< share of the light within r
+};
+
+/// What a filter should have written, and how far a float32 device may be off.
+struct Reference {
+  Picture scattered;        ///< RGB, as Frame::scattered
+  Picture scattered_bound;  ///< absolute, per value: rounding of a float32 device, derived per pixel
+  Picture result;           ///< RGB, as Frame::result; empty if the frame has no beauty
+  Picture result_bound;
+  Picture touched;  ///< 1 channel: 1 where the filter scattered, 0 where it must leave the pixel alone
+};
+
+/// The same taps, summed pixel by pixel. Reads the frame's host images. Output formats are float32 for the bounds:
+/// a caller that stores half adds half an ulp of that.
+Reference separable(const Frame& frame, std::span<const Material> materials, const Options& options);
+
+/// The surface integral over all visible pixels of the material,
+///     M(p) = sum_q R(|P_p - P_q|) E(q) A(q) / sum_q R(|P_p - P_q|) A(q),   A = |Tx x Ty|.
+/// Tx and Ty are the change of position per pixel, from the one-sided difference of depth, within the same material,
+/// that is smaller in size (backward if equal; none if the pixel is alone: then the depth does not change). R is
+/// averaged over the tangent patch of q by Gauss-Legendre quadrature: 4 x 4 points if q is at most 2 pixels away on
+/// both axes, 2 x 2 up to 6, else the centre; the patch of p itself is integrated in polar form, (1 / 2 pi) of the
+/// integral of cdf(boundary) over the angle, by 8-point Gauss-Legendre on each edge. `finer` multiplies the number of
+/// quadrature points per axis, to show what they are worth. Leaves the bounds empty: what a device adds is not derived
+/// here, but set by the tables of R that it reads.
+Reference surface_integral(const Frame& frame, std::span<const Material> materials, const Options& options,
+                           int finer = 1);
+
+}  // namespace dermis::oracle

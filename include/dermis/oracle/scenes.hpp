@@ -1,0 +1,46 @@
+/// Analytic G-buffers, for tests, for the benchmark and for trying things out.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "dermis/frame.hpp"
+
+namespace dermis::oracle {
+
+/// A made G-buffer with one scene unit to the millimetre. Images are packed; material ids are 0 (none), 1 and 2.
+struct Scene {
+  int width = 0;
+  int height = 0;
+  Camera camera;
+  std::vector<float> light;     ///< RGB irradiance
+  std::vector<float> albedo;    ///< RGB
+  std::vector<float> depth;     ///< mm along the view axis; 1e10 where nothing is seen, as Cycles writes it
+  std::vector<float> position;  ///< XYZ, mm, in camera space (x right, y down, z forward)
+  std::vector<float> normal;    ///< XYZ, unit length, towards the camera, the same axes
+  std::vector<float> material;  ///< ids
+  std::vector<float> beauty;    ///< RGB: light times albedo plus a grey highlight
+
+  /// Views of these images; the outputs are left to the caller.
+  Frame frame() const;
+};
+
+struct SceneInfo {
+  std::string name;
+  std::string what;
+};
+
+/// impulse (one lit pixel on a plane parallel to the screen), step (a vertical shadow edge on it), tilted (a plane at
+/// 60 degrees under a checkered light), sphere (over a background plane of no material, with a cast shadow), touching
+/// (two materials side by side on one plane, one lit red, the other blue).
+std::span<const SceneInfo> scenes();
+
+/// Makes a scene of that size. About `px_per_mm` pixels to the millimetre at its middle, seen by a perspective camera
+/// unless `projection` says otherwise. Throws Error(usage) that lists the names if there is no such scene, or if the
+/// size or scale is not positive.
+Scene scene(std::string_view name, int width, int height, double px_per_mm = 4,
+            Camera::Projection projection = Camera::Projection::perspective);
+
+}  // namespace dermis::oracle

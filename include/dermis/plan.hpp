@@ -1,0 +1,138 @@
+/// All that is slow, done once: kernels built for what a frame holds, taps placed and uploaded.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "dermis/device.hpp"
+#include "dermis/frame.hpp"
+#include "dermis/profile.hpp"
+
+struct _cl_command_queue;
+struct _cl_event;
+using cl_command_queue = struct _cl_command_queue*;
+using cl_event = struct _cl_event*;
+
+namespace dermis {
+
+/// A profile and the id that the pixels of its surface carry.
+struct Material {
+  int id = 0;  ///< 0..65535; ignored if the frame has no material ids
+  Profile profile;
+};
+
+enum class Method {
+  separable,  ///< a horizontal, then a vertical pass of importance-sampled taps
+  exact,      ///< the surface integral over all visible pixels of the material; slow
+};
+
+/// What Frame::light holds.
+enum class Lighting {
+  raw,  ///< irradiance: the albedo is not in it
+  lit,  ///< irradiance times albedo
+};
+
+struct Options {
+  Method method = Method::separable;
+  int taps = 25;           ///< per pass, centre included: odd, 3..127
+  double jitter = 0;       ///< share of the kernel radius within which taps are rotated per pixel, 0..1
+  std::uint32_t seed = 0;  ///< of the rotation
+  Lighting lighting = Lighting::raw;
+  double albedo_mix = 0;  ///< m in 0..1: albedo^m is put in before the passes, albedo^(1-m) after
+  int tile_width = 64;    ///< px, a multiple of 16; the result does not depend on it
+  int tile_height = 32;   ///< px
+};
+
+/// The images that the frames of a plan have. No code is built for what they do not have.
+struct FrameDescription {
+  bool depth = false;
+  bool material = false;
+  bool mask = false;
+  bool albedo = false;
+
+  /// The description of a frame.
+  static FrameDescription of(const Frame& frame) {
+    return {.depth = static_cast<bool>(frame.depth),
+            .material = static_cast<bool>(frame.material),
+            .mask = static_cast<bool>(frame.mask),
+            .albedo = static_cast<bool>(frame.albedo)};
+  }
+  bool operator==(const FrameDescription&) const = default;
+};
+
+/// What one run did. Times are of the device, in milliseconds.
+struct Stats {
+  double prepare_ms = 0;   ///< images to planar working images
+  double classify_ms = 0;  ///< tiles and spans
+  double scatter_ms = 0;   ///< the passes
+  double finish_ms = 0;    ///< albedo put back, outputs written
+  double total_ms = 0;     ///< wall clock, transfers included
+
+  std::int64_t tiles = 0;
+  std::int64_t tiles_computed = 0;
+  std::int64_t tiles_without_material = 0;  ///< skipped: no pixel has a material
+  std::int64_t tiles_narrow = 0;            ///< skipped: every kernel is narrower than half a pixel
+
+  std::int64_t pixels = 0;
+  std::int64_t pixels_scattered = 0;
+  std::int64_t pixels_without_material = 0;
+  std::int64_t pixels_narrow = 0;  ///< the kernel is narrower than half a pixel
+  std::int64_t pixels_bad = 0;     ///< light or albedo not finite: left alone, counted here only
+};
+
+/// Called with the share of work done, 0..1. Returning false stops the run after the current step.
+using Progress = std::function<bool(double)>;
+
+/// Work that was handed to a queue. Releases its OpenCL event when it goes.
+class Event {
+ public:
+  explicit Event(cl_event adopted);
+  ~Event();
+  Event(Event&& other) noexcept;
+  Event& operator=(Event&& other) noexcept;
+  Event(const Event&) = delete;
+  Event& operator=(const Event&) = delete;
+
+  /// Blocks until the work is done. Throws Error(device) if it failed.
+  void wait() const;
+  cl_event handle() const { return event_; }
+
+ private:
+  cl_event event_;
+};
+
+/// A filter, built. Immutable; may be used from several threads at once.
+class Plan {
+ public:
+  /// Builds the kernels and places the taps. Without material ids there is exactly one material.
+  /// Throws Error(usage) for options or materials outside their ranges, Error(role_missing) if they need an image that
+  /// the frames do not have, Error(device) if the device refuses the kernels.
+  Plan(const Device& device, std::vector<Material> materials, const FrameDescription& frames,
+       const Options& options = {});
+  ~Plan();
+  Plan(Plan&&) noexcept;
+  Plan& operator=(Plan&&) noexcept;
+
+  /// Filters one frame of host memory or of buffers and waits for it. Writes only the pixels of the outputs.
+  /// Throws Error(usage) if the frame is not as described or malformed, Error(device) on a device error.
+  /// Returns without writing anything if `progress` returned false.
+  Stats run(const Frame& frame, const Progress& progress = {}) const;
+
+  /// Puts the same work on the caller's queue, which is of the plan's context and device, to start after the events in
+  /// `wait_for`. All images are buffers. Never blocks.
+  Event enqueue(const Frame& frame, cl_command_queue queue, std::span<const cl_event> wait_for = {}) const;
+
+  /// Bytes of device memory that a run needs beyond the images of the caller.
+  std::size_t scratch_bytes(int width, int height) const;
+
+  struct State;  ///< not for callers
+
+ private:
+  std::unique_ptr<const State> state_;
+};
+
+}  // namespace dermis
