@@ -1,0 +1,26 @@
+// The visible surface: where the points of pixels lie, mm.
+#include "vector.h"
+#include "working.h"
+
+// V pixels of a row.
+typedef struct {
+  vfloat z;        // view depth
+  vfloat x_per_z;  // change of position with depth along the pixel's ray; 0 if orthographic
+  vfloat y_per_z;
+} Points;
+
+inline Points points_at(const struct FrameParams* f, global const float* depth, int x, int y) {
+  Points p;
+  p.z = load_floats(depth + pixel_at(f, x, y));
+  p.x_per_z = f->slope_x * (lane_numbers() + ((float)x + 0.5f - f->center_x));
+  p.y_per_z = (vfloat)(f->slope_y * ((float)y + 0.5f - f->center_y));
+  return p;
+}
+
+// Squared true distance to the points at depth z that lie (dx, dy) pixels away.
+inline vfloat squared_distance(const struct FrameParams* f, const Points* p, vfloat z, vfloat dx, vfloat dy) {
+  const vfloat delta_z = z - p->z;
+  const vfloat delta_x = fma(p->x_per_z, delta_z, dx * fma(z, (vfloat)(f->slope_x), (vfloat)(f->mm_per_px_x)));
+  const vfloat delta_y = fma(p->y_per_z, delta_z, dy * fma(z, (vfloat)(f->slope_y), (vfloat)(f->mm_per_px_y)));
+  return fma(delta_x, delta_x, fma(delta_y, delta_y, delta_z * delta_z));
+}

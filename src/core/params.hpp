@@ -1,0 +1,6 @@
+// kernels/params.h, as C++.
+#pragma once
+
+namespace dermis::params {
+#include "params.h"
+}

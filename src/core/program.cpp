@@ -1,0 +1,50 @@
+#include "core/program.hpp"
+
+#include <set>
+#include <sstream>
+
+#include "core/kernel_sources.hpp"
+
+namespace dermis {
+
+namespace {
+
+void append_file(const std::string& name, std::set<std::string>& seen, std::string& source) {
+  if (!seen.insert(name).second) return;
+  constexpr std::string_view include = "#include \"";
+  std::istringstream lines(kernel_sources().at(name));
+  source += "#line 1 \"" + name + "\"\n";
+  int number = 0;
+  for (std::string line; std::getline(lines, line);) {
+    ++number;
+    if (line.starts_with(include)) {
+      append_file(line.substr(include.size(), line.rfind('"') - include.size()), seen, source);
+      source += "#line " + std::to_string(number + 1) + " \"" + name + "\"\n";
+    } else {
+      source += line + "\n";
+    }
+  }
+}
+
+}  // namespace
+
+std::string assemble_source(const std::vector<std::string>& files) {
+  std::set<std::string> seen;
+  std::string source;
+  for (const std::string& file : files) append_file(file, seen, source);
+  return source;
+}
+
+cl::Program build_program(const cl::Context& context, const cl::Device& device, const std::vector<std::string>& files,
+                          const std::string& options) {
+  cl::Program program(context, assemble_source(files));
+  try {
+    program.build({device}, options.c_str());
+  } catch (const cl::Error&) {
+    const std::string log = program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device);
+    throw Error(ErrorCode::device, "kernels", log.substr(0, log.find('\n')), "a successful build");
+  }
+  return program;
+}
+
+}  // namespace dermis
