@@ -1,0 +1,25 @@
+/// The images of a frame as doubles.
+#pragma once
+
+#include "dermis/frame.hpp"
+#include "dermis/oracle/picture.hpp"
+
+namespace dermis::oracle {
+
+/// What a frame holds; pictures that it does not have are empty.
+struct FrameImages {
+  Picture light;
+  Picture albedo;
+  Picture depth;
+  Picture material;
+  Picture mask;
+  Picture beauty;
+};
+
+/// Reads the host images of a frame. Throws Error(usage) if its size is not positive or an image lies in a device
+/// buffer, Error(role_missing) if there is no light, or no depth under a perspective camera.
+FrameImages read_images(const Frame& frame);
+
+inline bool is_there(const Picture& picture) { return !picture.values.empty(); }
+
+}  // namespace dermis::oracle

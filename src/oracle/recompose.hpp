@@ -1,0 +1,13 @@
+/// From scattered light to what a filter writes.
+#pragma once
+
+#include "dermis/oracle/reference.hpp"
+#include "oracle/light.hpp"
+#include "oracle/surface.hpp"
+
+namespace dermis::oracle {
+
+/// Fills a Reference. The beauty changes only where the surface is touched.
+Reference recompose(const Surface& surface, const Light& light, const BoundedPicture& scattered);
+
+}  // namespace dermis::oracle

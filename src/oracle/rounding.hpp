@@ -1,0 +1,65 @@
+/// Running error analysis of float32 arithmetic (Higham, Accuracy and Stability of Numerical Algorithms, section 3.3).
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace dermis::oracle {
+
+/// Half a unit in the last place of 1: the relative error of one rounding to float32.
+inline constexpr double unit_roundoff = 0x1p-24;
+/// What a device may flush to zero is smaller than this.
+inline constexpr double smallest_normal = std::numeric_limits<float>::min();
+/// OpenCL allows 2.5 ulp for a division, that is 5 roundings; one more if the device multiplies by a reciprocal.
+inline constexpr double division_roundings = 6;
+/// OpenCL allows 16 ulp for pow.
+inline constexpr double power_roundings = 32;
+
+/// A value, and a bound on how far from it a float32 device that computes the same may be.
+struct Bounded {
+  double value = 0;
+  double error = 0;
+
+  double magnitude() const { return std::abs(value) + error; }
+  double low() const { return value - error; }
+  double high() const { return value + error; }
+};
+
+/// A value that a float32 holds.
+constexpr Bounded exact(double value) { return {value, 0}; }
+
+/// A constant of the caller, which the device gets as float32.
+inline Bounded as_float(double value) {
+  const bool held = static_cast<double>(static_cast<float>(value)) == value;
+  return {value, held ? 0 : unit_roundoff * std::abs(value)};
+}
+
+/// `a` after `count` more roundings.
+inline Bounded rounded(Bounded a, double count = 1) {
+  return {a.value, a.error + count * unit_roundoff * a.magnitude()};
+}
+
+inline bool is_exactly(Bounded a, double value) { return a.error == 0 && a.value == value; }
+
+inline Bounded operator+(Bounded a, Bounded b) { return rounded({a.value + b.value, a.error + b.error}); }
+inline Bounded operator-(Bounded a, Bounded b) { return rounded({a.value - b.value, a.error + b.error}); }
+
+inline Bounded operator*(Bounded a, Bounded b) {
+  if (is_exactly(a, 1)) return b;
+  if (is_exactly(b, 1)) return a;
+  return rounded({a.value * b.value, std::abs(a.value) * b.error + std::abs(b.value) * a.error + a.error * b.error});
+}
+
+inline Bounded operator/(Bounded a, Bounded b) {
+  if (is_exactly(b, 1)) return a;
+  const double value = a.value / b.value;
+  const double smallest_divisor = std::abs(b.value) - b.error;
+  if (smallest_divisor <= 0) return {value, std::numeric_limits<double>::infinity()};
+  return rounded({value, (a.error + std::abs(value) * b.error) / smallest_divisor}, division_roundings);
+}
+
+/// The larger one: whichever the device takes, it is no further off than the worse of the two.
+inline Bounded larger(Bounded a, Bounded b) { return {std::max(a.value, b.value), std::max(a.error, b.error)}; }
+
+}  // namespace dermis::oracle

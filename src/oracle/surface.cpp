@@ -1,0 +1,117 @@
+#include "oracle/surface.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "dermis/error.hpp"
+
+namespace dermis::oracle {
+
+namespace {
+
+constexpr double background_depth = 1e9;  // scene units, see Frame
+constexpr double id_tolerance = static_cast<double>(1e-3F);
+
+void check(const FrameImages& images, std::span<const Material> materials) {
+  if (materials.empty()) throw Error(ErrorCode::usage, "materials", "none", "at least one");
+  if (!is_there(images.material) && materials.size() > 1) {
+    throw Error(ErrorCode::usage, "materials", std::to_string(materials.size()),
+                "one, as the frame has no material ids");
+  }
+  const bool needs_albedo = std::any_of(materials.begin(), materials.end(),
+                                        [](const Material& material) { return material.width_follows_albedo; });
+  if (needs_albedo && !is_there(images.albedo)) {
+    throw Error(ErrorCode::role_missing, "frame.albedo", "no image", "the albedo that a profile's width follows");
+  }
+}
+
+bool is_finite_at(const Picture& picture, int x, int y) {
+  for (int c = 0; c < picture.channels; ++c) {
+    if (!std::isfinite(picture(x, y, c))) return false;
+  }
+  return true;
+}
+
+bool is_lit_surface(const FrameImages& images, const View& view, int x, int y) {
+  if (is_there(images.depth)) {
+    const double depth = images.depth(x, y);
+    if (!std::isfinite(depth) || depth >= background_depth || (view.is_perspective() && depth <= 0)) return false;
+  }
+  if (is_there(images.mask) && !(std::isfinite(images.mask(x, y)) && images.mask(x, y) > 0)) return false;
+  if (is_there(images.albedo) && !is_finite_at(images.albedo, x, y)) return false;
+  return is_finite_at(images.light, x, y);
+}
+
+int material_at(const FrameImages& images, std::span<const Material> materials, int x, int y) {
+  if (!is_there(images.material)) return 0;
+  const double id = images.material(x, y);
+  for (std::size_t m = 0; m < materials.size(); ++m) {
+    if (std::abs(id - materials[m].id) <= id_tolerance) return static_cast<int>(m);
+  }
+  return -1;
+}
+
+/// s(A) of Christensen and Burley 2015, eq. 6.
+Bounded burley_scale(Bounded albedo) {
+  const Bounded from_middle = albedo - as_float(0.8);
+  return as_float(1.9) - albedo + exact(3.5) * from_middle * from_middle;
+}
+
+std::array<Bounded, 3> width_factor(const FrameImages& images, const Material& material, int x, int y) {
+  const Bounded mask = exact(is_there(images.mask) ? std::min(images.mask(x, y), 1.0) : 1);
+  if (!material.width_follows_albedo) return {mask, mask, mask};
+  std::array<Bounded, 3> factor;
+  for (int c = 0; c < 3; ++c) factor[c] = mask / burley_scale(exact(std::clamp(images.albedo(x, y, c), 0.0, 1.0)));
+  return factor;
+}
+
+Bounded widest(const std::array<Bounded, 3>& width_factor, const Taps& taps) {
+  Bounded result;
+  for (int c = 0; c < 3; ++c) result = larger(result, width_factor[c] * exact(taps.relative_width[c]));
+  return result;
+}
+
+void decide_touched(SurfacePixel& pixel, const Taps& taps) {
+  const Bounded radius_px =
+      larger(pixel.effective_footprint[horizontal], pixel.effective_footprint[vertical]) * as_float(taps.radius_mm);
+  const double narrow = static_cast<double>(Taps::min_radius_px);
+  pixel.touched = radius_px.value >= narrow;
+  pixel.touched_unsure = radius_px.low() < narrow && radius_px.high() >= narrow;
+}
+
+}  // namespace
+
+Surface::Surface(const Frame& frame, const FrameImages& images, std::span<const Material> materials)
+    : width_(frame.width), height_(frame.height), view_(frame.camera, frame.mm_per_unit) {
+  check(images, materials);
+  pixels_.resize(static_cast<std::size_t>(width_) * height_);
+  for (int y = 0; y < height_; ++y) {
+    for (int x = 0; x < width_; ++x) {
+      if (!is_lit_surface(images, view_, x, y)) continue;
+      SurfacePixel& pixel = pixels_[static_cast<std::size_t>(y) * width_ + x];
+      pixel.material = material_at(images, materials, x, y);
+      if (pixel.material < 0) continue;
+      const Material& material = materials[pixel.material];
+      const Bounded z_mm = is_there(images.depth) ? view_.depth_mm(images.depth(x, y)) : exact(0);
+      pixel.position_mm = view_.position(x, y, z_mm);
+      pixel.width_factor = width_factor(images, material, x, y);
+      const Bounded spread = widest(pixel.width_factor, material.taps);
+      for (const Axis axis : {horizontal, vertical}) {
+        pixel.footprint[axis] = view_.footprint(axis, z_mm);
+        pixel.effective_footprint[axis] = pixel.footprint[axis] * spread;
+      }
+      decide_touched(pixel, material.taps);
+    }
+  }
+}
+
+Picture Surface::touched() const {
+  Picture touched(width_, height_, 1);
+  for (int y = 0; y < height_; ++y) {
+    for (int x = 0; x < width_; ++x) touched(x, y) = at(x, y).touched ? 1 : 0;
+  }
+  return touched;
+}
+
+}  // namespace dermis::oracle

@@ -1,0 +1,54 @@
+/// What the pixels of a frame show: which material, where, and how wide light spreads there.
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "dermis/frame.hpp"
+#include "dermis/oracle/reference.hpp"
+#include "oracle/frame_images.hpp"
+#include "oracle/rounding.hpp"
+#include "oracle/view.hpp"
+
+namespace dermis::oracle {
+
+/// One pixel. Where there is no material, nothing else is known.
+struct SurfacePixel {
+  int material = -1;            ///< index into the materials; -1: none, neither gives nor takes light
+  bool touched = false;         ///< takes light: has a material and its kernel is at least half a pixel wide
+  bool touched_unsure = false;  ///< so close to half a pixel that a float32 device may decide otherwise
+  std::array<Bounded, 3> position_mm{};
+  std::array<Bounded, 2> footprint{};            ///< px per mm along x and y
+  std::array<Bounded, 3> width_factor{};         ///< k: the profile is R(r / k) / k^2
+  std::array<Bounded, 2> effective_footprint{};  ///< footprint times the widest channel's k, px per mm
+};
+
+class Surface {
+ public:
+  /// Throws Error(usage) if there is no material, or several and no material ids, Error(role_missing) if a width
+  /// follows an albedo that is not there.
+  Surface(const Frame& frame, const FrameImages& images, std::span<const Material> materials);
+
+  int width() const { return width_; }
+  int height() const { return height_; }
+  const View& view() const { return view_; }
+
+  const SurfacePixel& at(int x, int y) const { return pixels_[static_cast<std::size_t>(y) * width_ + x]; }
+
+  /// True if the pixel is in the image and of that material.
+  bool shows(int material, int x, int y) const {
+    return x >= 0 && y >= 0 && x < width_ && y < height_ && at(x, y).material == material;
+  }
+
+  /// 1 channel: 1 where touched.
+  Picture touched() const;
+
+ private:
+  int width_;
+  int height_;
+  View view_;
+  std::vector<SurfacePixel> pixels_;
+};
+
+}  // namespace dermis::oracle
