@@ -1,0 +1,128 @@
+// What is not computed, how it is counted, and that it keeps its bits.
+#include <cmath>
+#include <cstring>
+
+#include "catch.hpp"
+#include "core/random_frame.hpp"
+#include "dermis/plan.hpp"
+
+using dermis::Camera;
+using dermis::Device;
+using dermis::Format;
+using dermis::Frame;
+using dermis::FrameDescription;
+using dermis::Plan;
+using dermis::Stats;
+
+TEST_CASE("pixels without material and narrow kernels keep their bits and are counted", "[skipping]") {
+  const Device device = Device::open();
+  constexpr int width = 200;
+  constexpr int height = 70;
+  GuardedImage light(width, height, 3, Format::f32), albedo(width, height, 3, Format::f32);
+  GuardedImage beauty(width, height, 3, Format::f16), result(width, height, 3, Format::f16);
+  GuardedImage scattered(width, height, 3, Format::f32), depth(width, height, 1, Format::f32);
+  GuardedImage material(width, height, 1, Format::f32);
+  Random random(800);
+  // Left third: no material. Middle: far away, so that the kernel is below half a pixel. Right: scatters.
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      for (int c = 0; c < 3; ++c) {
+        light.set(x, y, c, random.uniform(0, 2));
+        albedo.set(x, y, c, random.uniform(0, 1));
+        beauty.set(x, y, c, random.uniform(0, 2));
+      }
+      depth.set(x, y, 0, x < 128 ? 1e6 : 100);
+      material.set(x, y, 0, x < 64 ? 0 : 5);
+    }
+  }
+  beauty.set(3, 3, 1, NAN);  // a pixel that is not touched may hold anything
+  light.set(150, 20, 0, NAN);
+  light.set(160, 30, 2, INFINITY);
+
+  Frame frame{.width = width, .height = height, .camera = Camera::perspective(400, 400, 100, 35)};
+  frame.light = light.image();
+  frame.albedo = albedo.image();
+  frame.depth = depth.image();
+  frame.material = material.image();
+  frame.beauty = beauty.image();
+  frame.scattered = scattered.output();
+  frame.result = result.output();
+  const Plan plan(device, {{5, dermis::preset("skin").profile}}, FrameDescription::of(frame), {});
+  const Stats stats = plan.run(frame);
+
+  CHECK(stats.pixels == width * height);
+  CHECK(stats.pixels_without_material == 64 * height);
+  CHECK(stats.pixels_narrow == 64 * height);
+  CHECK(stats.pixels_bad == 2);
+  CHECK(stats.pixels_scattered == (width - 128) * height - 2);
+  CHECK(stats.tiles == 4 * 3);
+  CHECK(stats.tiles_without_material == 3);
+  CHECK(stats.tiles_narrow == 3);
+  CHECK(stats.tiles_computed == 6);
+  long changed = 0;
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      for (int c = 0; c < 3; ++c) {
+        const bool touched = x >= 128 && !(x == 150 && y == 20) && !(x == 160 && y == 30);
+        if (!touched) {
+          REQUIRE(result.bits(x, y, c) == beauty.bits(x, y, c));
+          REQUIRE(scattered.bits(x, y, c) == light.bits(x, y, c));
+        } else {
+          REQUIRE(std::isfinite(scattered.get(x, y, c)));  // what is not finite does not spread
+          changed += result.bits(x, y, c) != beauty.bits(x, y, c) ? 1 : 0;
+        }
+      }
+    }
+  }
+  CHECK(changed > 10000);
+}
+
+TEST_CASE("light does not cross from one material to another", "[skipping]") {
+  const Device device = Device::open();
+  constexpr int width = 90;
+  constexpr int height = 40;
+  std::vector<float> light(width * height * 3), scattered(light.size());
+  std::vector<std::uint8_t> ids(width * height);
+  for (int i = 0; i < width * height; ++i) {
+    const bool left = i % width < 41;
+    ids[i] = left ? 1 : 2;
+    light[3 * i] = left ? 1.0F : 0.0F;
+    light[3 * i + 2] = left ? 0.0F : static_cast<float>(i % 7);
+  }
+  Frame frame{.width = width, .height = height, .light = {.host = light.data()}, .camera = Camera::orthographic(4, 4)};
+  frame.material = {.host = ids.data(), .buffer = nullptr, .layout = {.format = Format::u8}};
+  frame.scattered.host = scattered.data();
+  for (const double jitter : {0.0, 1.0}) {
+    Plan(device, {{1, dermis::preset("skin").profile}, {2, dermis::preset("marble").profile}},
+         FrameDescription::of(frame), {.jitter = jitter})
+        .run(frame);
+    for (int i = 0; i < width * height; ++i) {
+      REQUIRE(scattered[3 * i + (ids[i] == 1 ? 2 : 0)] == 0);
+      if (ids[i] == 1) REQUIRE(scattered[3 * i] == Approx(1).epsilon(2e-6));
+    }
+  }
+}
+
+TEST_CASE("progress goes to 1 and can stop a run", "[skipping]") {
+  const Device device = Device::open();
+  std::vector<float> light(64 * 64 * 3, 1.0F), scattered(light.size(), -1.0F);
+  light[3 * (64 * 30 + 30)] = 50;
+  Frame frame{.width = 64, .height = 64, .light = {.host = light.data()}, .camera = Camera::orthographic(4, 4)};
+  frame.scattered.host = scattered.data();
+  const Plan plan(device, {{0, dermis::preset("skin").profile}}, FrameDescription::of(frame),
+                  {.method = dermis::Method::exact, .tile_height = 8});
+  double last = 0;
+  plan.run(frame, [&](double share) {
+    CHECK(share > last);
+    last = share;
+    return true;
+  });
+  CHECK(last == 1);
+  CHECK(scattered[0] == Approx(1).epsilon(0.1));
+
+  std::fill(scattered.begin(), scattered.end(), -1.0F);
+  int calls = 0;
+  plan.run(frame, [&](double) { return ++calls < 3; });
+  CHECK(calls == 3);
+  CHECK(std::all_of(scattered.begin(), scattered.end(), [](float value) { return value == -1; }));
+}
