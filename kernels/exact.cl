@@ -1,9 +1,7 @@
 // slopes, exact: the surface integral over all visible pixels of a material,
 //     M(p) = sum R(|P_p - P_q|) E(q) A(q) / sum R(|P_p - P_q|) A(q).
-#include "surface.h"
 #include "table.h"
-#include "vector.h"
-#include "working.h"
+#include "tangent.h"
 
 // Gauss-Legendre points and weights on [-1/2, 1/2].
 constant float points_2[2] = {-0.288675135f, 0.288675135f};
@@ -18,49 +16,23 @@ constant float weights_8[8] = {0.0506142681f, 0.111190517f, 0.156853323f, 0.1813
 #define NEAR_4 2
 #define NEAR_2 6
 
-// Change of depth to the neighbour (dx, dy) away, or NAN if it is not of material m.
-inline float depth_change(const struct FrameParams* f, global const float* depth, global const uchar* material, int x,
-                          int y, int dx, int dy, int m) {
-  if (x + dx < 0 || x + dx >= f->width || y + dy < 0 || y + dy >= f->height) return NAN;
-  const size_t at = pixel_at(f, x + dx, y + dy);
-  if ((material[at] & MATERIAL_MASK) != m) return NAN;
-  return depth[at] - depth[pixel_at(f, x, y)];
-}
-
-inline float smaller_slope(float backward, float forward) {
-  if (isnan(backward)) return isnan(forward) ? 0.0f : forward;
-  return isnan(forward) || fabs(backward) <= fabs(forward) ? backward : forward;
-}
-
 // geometry receives three planes: depth slopes in x and y, mm per px, and the area of the pixel's patch, mm^2.
 kernel void slopes(struct FrameParams f, global const float* depth, global const uchar* material,
                    global float* geometry) {
   const Item item = this_item(&f, 0);
   const size_t plane = plane_size(&f);
-  const int x_first = item.x_begin == 0 ? -PADDING : item.x_begin;
-  const int x_last = item.x_end == f.width ? f.stride - PADDING : item.x_end;
   for (int y = item.y_begin; y < item.y_end; ++y) {
-    for (int x = x_first; x < x_last; ++x) {
+    for (int x = item.x_begin; x < item.x_end; x += V) {
       const size_t at = pixel_at(&f, x, y);
-      float slope_x = 0.0f;
-      float slope_y = 0.0f;
-      float area = 0.0f;
-      const int m = x >= 0 && x < f.width ? material[at] & MATERIAL_MASK : 0;
-      if (m > 0) {
-        slope_x = smaller_slope(-depth_change(&f, depth, material, x, y, -1, 0, m),
-                                depth_change(&f, depth, material, x, y, 1, 0, m));
-        slope_y = smaller_slope(-depth_change(&f, depth, material, x, y, 0, -1, m),
-                                depth_change(&f, depth, material, x, y, 0, 1, m));
-        const float z = depth[at];
-        const float ray_x = f.slope_x * ((float)x + 0.5f - f.center_x);
-        const float ray_y = f.slope_y * ((float)y + 0.5f - f.center_y);
-        const float3 tangent_x = (float3)(f.mm_per_px_x + f.slope_x * z + ray_x * slope_x, ray_y * slope_x, slope_x);
-        const float3 tangent_y = (float3)(ray_x * slope_y, f.mm_per_px_y + f.slope_y * z + ray_y * slope_y, slope_y);
-        area = length(cross(tangent_x, tangent_y));
-      }
-      geometry[at] = slope_x;
-      geometry[plane + at] = slope_y;
-      geometry[2 * plane + at] = area;
+      const Points p = points_at(&f, depth, x, y);
+      const vfloat slope_x = depth_slope(&f, depth, material, x, y, 1, 0);
+      const vfloat slope_y = depth_slope(&f, depth, material, x, y, 0, 1);
+      const Tangent a = tangent_x(&f, &p, slope_x);
+      const Tangent b = tangent_y(&f, &p, slope_y);
+      const Tangent normal = {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+      store_floats(geometry + at, slope_x);
+      store_floats(geometry + plane + at, slope_y);
+      store_floats(geometry + 2 * plane + at, sqrt(squared_length(normal)));
     }
   }
 }
@@ -106,17 +78,15 @@ inline vrgb patch_average(const struct FrameParams* f, const Points* p, global c
 // Light that stays on the pixel's own patch: the integral of the cumulated profile at the patch's edge over the angle.
 inline vrgb own_share(const struct FrameParams* f, const Points* p, global const float4* tables,
                       struct TableParams cumulated, vrgb reciprocal, vfloat slope_x, vfloat slope_y, vfloat area) {
-  const vfloat size_x = fma(p->z, (vfloat)(f->slope_x), (vfloat)(f->mm_per_px_x));
-  const vfloat size_y = fma(p->z, (vfloat)(f->slope_y), (vfloat)(f->mm_per_px_y));
-  const vfloat ax = fma(p->x_per_z, slope_x, size_x), ay = p->y_per_z * slope_x, az = slope_x;
-  const vfloat bx = p->x_per_z * slope_y, by = fma(p->y_per_z, slope_y, size_y), bz = slope_y;
+  const Tangent a = tangent_x(f, p, slope_x);
+  const Tangent b = tangent_y(f, p, slope_y);
   vrgb share = {(vfloat)(0.0f), (vfloat)(0.0f), (vfloat)(0.0f)};
   for (int i = 0; i < 16; ++i) {
     // Two of the four edges; the other two are their mirror images.
     const float s = i < 8 ? 0.5f : points_8[i - 8];
     const float t = i < 8 ? points_8[i] : 0.5f;
-    const vfloat x = s * ax + t * bx, y = s * ay + t * by, z = s * az + t * bz;
-    const vfloat r_squared = fma(x, x, fma(y, y, z * z));
+    const Tangent edge = {s * a.x + t * b.x, s * a.y + t * b.y, s * a.z + t * b.z};
+    const vfloat r_squared = squared_length(edge);
     const vfloat angle = weights_8[i & 7] * 0.5f * area / r_squared;
     add(&share, times(look_up_scaled(tables, cumulated, r_squared, reciprocal), angle * M_1_PI_F));
   }

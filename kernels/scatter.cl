@@ -13,15 +13,16 @@ typedef struct {
 // What every tap of the lanes of one material needs.
 typedef struct {
   Points points;
-  vint material;        // 1 + its index, the same in all lanes
-  vrgb reciprocal;      // of the width factor
-  vfloat length_scale;  // from the rung's mm to those of the pixel
+  vint material;    // 1 + its index, the same in all lanes
+  vrgb reciprocal;  // of the width factor
+  float footprint;  // of the rung
   struct TableParams falloff;
 } Target;
 
 typedef struct {
   global const float* light;
   global const float* depth;
+  global const float* segment;  // along the pass
   global const uchar* material;
   global const float4* tables;
   size_t plane;
@@ -36,16 +37,18 @@ inline void add_weighted(Sum* sum, vrgb weight, vrgb light) {
   sum->weight.b += weight.b;
 }
 
-// Adds the pixels (dx, dy) away, at depth z and of material m, weighed by true distance; those of another material
-// count nothing.
+// Adds the pixels (dx, dy) away, at depth z, that span a segment of surface and are of material m, weighed by true
+// distance; those of another material count nothing.
 inline void add_tap(Sum* sum, const struct FrameParams* f, const Source* source, const Target* target,
-                    global const struct PairParams* pair, vfloat dx, vfloat dy, vfloat z, vint m, vrgb light) {
+                    global const struct PairParams* pair, vfloat dx, vfloat dy, vfloat z, vfloat segment, vint m,
+                    vrgb light) {
   const vint same = AS_MASK((m & MATERIAL_MASK) == target->material);
   const vfloat r_squared = squared_distance(f, &target->points, z, dx, dy);
   const vrgb density = look_up_scaled(source->tables, target->falloff, r_squared, target->reciprocal);
-  const vrgb length = {pair->length_mm[0] * target->length_scale * target->reciprocal.r,
-                       pair->length_mm[1] * target->length_scale * target->reciprocal.g,
-                       pair->length_mm[2] * target->length_scale * target->reciprocal.b};
+  const vfloat stretch = target->footprint * segment;
+  const vrgb length = {pair->length_mm[0] * stretch * target->reciprocal.r,
+                       pair->length_mm[1] * stretch * target->reciprocal.g,
+                       pair->length_mm[2] * stretch * target->reciprocal.b};
   const vrgb weight = {length.r * density.r, length.g * density.g, length.b * density.b};
   add_weighted(sum, keep_rgb(same, weight), keep_rgb(same, light));
 }
@@ -56,7 +59,8 @@ inline void add_straight(Sum* sum, const struct FrameParams* f, const Source* so
   if (x + dx <= -V || x + dx >= f->width || y + dy < 0 || y + dy >= f->height) return;
   const size_t at = pixel_at(f, x + dx, y + dy);
   add_tap(sum, f, source, target, pair, (vfloat)((float)dx), (vfloat)((float)dy), load_floats(source->depth + at),
-          load_bytes(source->material + at), load_rgb(source->light, source->plane, at));
+          load_floats(source->segment + at), load_bytes(source->material + at),
+          load_rgb(source->light, source->plane, at));
 }
 
 #if JITTER
@@ -65,7 +69,7 @@ inline void add_rotated(Sum* sum, const struct FrameParams* f, const Source* sou
                         global const struct PairParams* pair, int x, int y, vint dx, vint dy) {
   const vint qx = x + int_lane_numbers() + dx;
   const vint qy = y + dy;
-  vfloat z, fx, fy;
+  vfloat z, segment, fx, fy;
   vint m;
   vrgb light;
 #define READ_LANE(lane)                                                                                        \
@@ -74,6 +78,7 @@ inline void add_rotated(Sum* sum, const struct FrameParams* f, const Source* sou
         LANE(qx, lane) >= 0 && LANE(qx, lane) < f->width && LANE(qy, lane) >= 0 && LANE(qy, lane) < f->height; \
     const size_t at = pixel_at(f, inside ? LANE(qx, lane) : x, inside ? LANE(qy, lane) : y);                   \
     LANE(z, lane) = source->depth[at];                                                                         \
+    LANE(segment, lane) = source->segment[at];                                                                 \
     LANE(m, lane) = inside ? source->material[at] : 0;                                                         \
     LANE(light.r, lane) = source->light[at];                                                                   \
     LANE(light.g, lane) = source->light[source->plane + at];                                                   \
@@ -83,7 +88,7 @@ inline void add_rotated(Sum* sum, const struct FrameParams* f, const Source* sou
   }
   EACH_LANE(READ_LANE)
 #undef READ_LANE
-  add_tap(sum, f, source, target, pair, fx, fy, z, m, light);
+  add_tap(sum, f, source, target, pair, fx, fy, z, segment, m, light);
 }
 
 // The axis of the pass, turned by each lane's angle, in 1/4096 px per px.
@@ -103,8 +108,8 @@ inline void rotated_axis(global const struct RotationParams* rotations, vint ind
 inline vrgb scatter_material(const struct FrameParams* f, const Source* source, const Target* target,
                              global const struct MaterialParams* its, global const struct RungParams* rung,
                              global const struct PairParams* pairs, global const struct RotationParams* rotations,
-                             uint seed, vfloat mm_per_px, vrgb own_light, int x, int y, int axis) {
-  const vfloat core_mm = rung->core_half_width_px * mm_per_px;
+                             uint seed, vfloat own_segment, vrgb own_light, int x, int y, int axis) {
+  const vfloat core_mm = rung->core_half_width_px * own_segment;
   const vrgb core = look_up_scaled(source->tables, its->core, core_mm * core_mm, target->reciprocal);
   Sum sum = {{core.r * own_light.r, core.g * own_light.g, core.b * own_light.b}, core};
   int i = 0;
@@ -139,13 +144,13 @@ inline int rung_index(float radius_px, int rungs) {
 inline void pass(const struct FrameParams* f, int first_row, global const struct MaterialParams* materials,
                  global const struct RungParams* rungs, global const struct PairParams* pairs,
                  global const float4* tables, global const struct RotationParams* rotations, uint seed,
-                 global const float* light, global const float* depth, global const uchar* material,
-                 global const float* width, global const float* footprint, global const uchar* tile_class,
-                 global float* out, int axis) {
+                 global const float* light, global const float* depth, global const float* segment,
+                 global const uchar* material, global const float* width, global const float* footprint,
+                 global const uchar* tile_class, global float* out, int axis) {
   const Item item = this_item(f, first_row);
   const int needs = tile_class[item.tile];
   if (needs == TILE_EMPTY) return;
-  const Source source = {light, depth, material, tables, plane_size(f)};
+  const Source source = {light, depth, segment + (axis == 0 ? 0 : plane_size(f)), material, tables, plane_size(f)};
   for (int y = item.y_begin; y < item.y_end; ++y) {
     for (int x = item.x_begin; x < item.x_end; x += V) {
       const size_t at = pixel_at(f, x, y);
@@ -157,8 +162,6 @@ inline void pass(const struct FrameParams* f, int first_row, global const struct
         Target target;
         target.points = points_at(f, depth, x, y);
         target.reciprocal = width_reciprocal(width, source.plane, at);
-        const vfloat mm_per_px = axis == 0 ? fma(target.points.z, (vfloat)(f->slope_x), (vfloat)(f->mm_per_px_x))
-                                           : fma(target.points.z, (vfloat)(f->slope_y), (vfloat)(f->mm_per_px_y));
         for (int i = 0; i < MATERIALS; ++i) {
           target.material = (vint)(i + 1);
           const vint mine = AS_MASK(m == target.material);
@@ -166,11 +169,11 @@ inline void pass(const struct FrameParams* f, int first_row, global const struct
           const int index = rung_index(span_footprint * its->radius_mm, its->rungs);
           if (!any(mine) || index < 0) continue;
           global const struct RungParams* rung = rungs + its->first_rung + index;
-          target.length_scale = rung->footprint * mm_per_px;
+          target.footprint = rung->footprint;
           target.falloff = its->falloff;
           result = select_rgb(result,
-                              scatter_material(f, &source, &target, its, rung, pairs, rotations, seed, mm_per_px,
-                                               own_light, x, y, axis),
+                              scatter_material(f, &source, &target, its, rung, pairs, rotations, seed,
+                                               load_floats(source.segment + at), own_light, x, y, axis),
                               mine);
         }
       }
@@ -183,15 +186,15 @@ inline void pass(const struct FrameParams* f, int first_row, global const struct
   struct FrameParams f, int first_row, global const struct MaterialParams *materials,                                 \
       global const struct RungParams *rungs, global const struct PairParams *pairs, global const float4 *tables,      \
       global const struct RotationParams *rotations, uint seed, global const float *light, global const float *depth, \
-      global const uchar *material, global const float *width, global const float *footprint,                         \
-      global const uchar *tile_class, global float *out
+      global const float *segment, global const uchar *material, global const float *width,                           \
+      global const float *footprint, global const uchar *tile_class, global float *out
 
 kernel void scatter_x(SCATTER_ARGUMENTS) {
-  pass(&f, first_row, materials, rungs, pairs, tables, rotations, seed, light, depth, material, width, footprint,
-       tile_class, out, 0);
+  pass(&f, first_row, materials, rungs, pairs, tables, rotations, seed, light, depth, segment, material, width,
+       footprint, tile_class, out, 0);
 }
 
 kernel void scatter_y(SCATTER_ARGUMENTS) {
-  pass(&f, first_row, materials, rungs, pairs, tables, rotations, seed, light, depth, material, width, footprint,
-       tile_class, out, 1);
+  pass(&f, first_row, materials, rungs, pairs, tables, rotations, seed, light, depth, segment, material, width,
+       footprint, tile_class, out, 1);
 }

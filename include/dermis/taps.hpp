@@ -36,17 +36,20 @@ struct Rung {
 /// every tap lies on a whole pixel whatever the footprint, and the profile's marginal a(x) and its integral as
 /// tables, so that a pass can weigh each tap by the true distance of the surface points.
 ///
-/// A pass over pixel p with footprint F (pixels per mm along the pass) and width factor k per channel
-/// (1 unless an albedo or mask scales the profile) takes the rung of its span and computes
+/// A pass over pixel p of width factor k per channel (1 unless an albedo or mask scales the profile) takes the rung of
+/// its span and computes
 ///
-///     w_0 = core(core_half_width_px / (F k))
-///     w_i = (rung.footprint / F) * length_mm_i * falloff(|P_p - P_i| / k) / k
+///     w_0 = core(core_half_width_px s_p / k)
+///     w_i = length_mm_i rung.footprint s_i falloff(|P_p - P_i| / k) / k
 ///     result = sum w_i x_i / sum w_i
 ///
-/// over the taps that lie on the same material. The rung of a pass is that of the kernel radius
-/// radius_mm * max over the pixels of a span that scatter of F max_c(k_c relative_width_c), where a span is 16 pixels
-/// of a row, starting at a multiple of 16; a pass whose rung is -1 changes nothing. On a plane parallel to the screen
-/// w_i is the light that falls on the run of pixels the tap stands for, to first order in the step between rungs.
+/// where P are the surface points and s is the length of surface, mm, that a pixel spans along the pass: |dP/dx| or
+/// |dP/dy|, the change of depth in it being the smaller one of the differences to both neighbours of the same material,
+/// 0 if they differ in sign. The sums go over the taps that lie on the same material. The rung of a pass is that of the
+/// kernel radius radius_mm * max over the pixels of a span that scatter of F max_c(k_c relative_width_c), where F is
+/// the pixel's footprint and a span is 16 pixels of a row, starting at a multiple of 16; a pass whose rung is -1
+/// changes nothing. On a plane parallel to the screen w_i is the light that falls on the run of pixels the tap stands
+/// for, to first order in the step between rungs.
 struct Taps {
   /// The radius, mm, beyond which the passes do not look: 99.9 % of the widest channel's marginal.
   double radius_mm = 0;

@@ -12,7 +12,7 @@ namespace dermis {
 namespace {
 
 /// The share of the light that the exact integral looks for: the rest is below its rounding.
-constexpr double share_within_reach = 1 - 1e-7;
+constexpr double share_within_reach = 1 - 1e-6;
 
 void append_rungs(const Taps& taps, double jitter, MaterialTables& tables) {
   for (const Rung& rung : taps.rungs) {

@@ -67,8 +67,8 @@ WorkingSize::WorkingSize(int width, int height, const Options& options)
       tiles_y(round_up(height, options.tile_height) / options.tile_height) {}
 
 std::size_t WorkingSize::bytes(int width, int height, bool has_pixel_width) const {
-  // light, between and scattered have three planes, depth one; width factors are three more.
-  const std::size_t planes = 3 + 3 + 3 + 1 + (has_pixel_width ? 3 : 0);
+  // light, between and scattered have three planes, depth one, segments two; width factors are three more.
+  const std::size_t planes = 3 + 3 + 3 + 1 + 2 + (has_pixel_width ? 3 : 0);
   const std::size_t floats = planes * plane + static_cast<std::size_t>(spans) * height * 2;
   const std::size_t tiles = static_cast<std::size_t>(tiles_x) * tiles_y;
   return floats * sizeof(float) + plane + static_cast<std::size_t>(width) * height +
@@ -95,6 +95,7 @@ Passes::Passes(const Plan::State& plan, const Frame& frame, const BoundImages& i
   footprint_ = allocate(static_cast<std::size_t>(size_.spans) * frame.height * 2 * sizeof(float));
   tile_class_ = allocate(tiles);
   counters_ = allocate(tiles * COUNTERS * sizeof(int));
+  segment_ = allocate(2 * plane_bytes);
   between_ = allocate(3 * plane_bytes);
   scattered_ = allocate(3 * plane_bytes);
   if (plan.options.jitter > 0) {
@@ -130,11 +131,10 @@ void Passes::prepare_and_classify() {
   set_arguments(classify, params_, plan_.materials, depth_, material_, width_, bad_, footprint_, tile_class_,
                 counters_);
   events_.classify = launch(classify, size_.tiles_x, size_.tiles_y);
-  if (plan_.options.method == Method::exact) {
-    cl::Kernel slopes(plan_.program, "slopes");
-    set_arguments(slopes, params_, depth_, material_, between_);
-    events_.scatter.push_back(launch(slopes, columns, rows));
-  }
+  const bool exact = plan_.options.method == Method::exact;
+  cl::Kernel tangents(plan_.program, exact ? "slopes" : "segments");
+  set_arguments(tangents, params_, depth_, material_, exact ? between_ : segment_);
+  events_.scatter.push_back(launch(tangents, columns, rows));
 }
 
 int Passes::scatter_steps() const {
@@ -159,7 +159,7 @@ void Passes::launch_separable() {
   const auto pass = [&](const char* name, const cl::Buffer& from, const cl::Buffer& to) {
     cl::Kernel kernel(plan_.program, name);
     set_arguments(kernel, params_, 0, plan_.materials, plan_.rungs, plan_.pairs, plan_.nodes, rotations_,
-                  plan_.options.seed, from, depth_, material_, width_, footprint_, tile_class_, to);
+                  plan_.options.seed, from, depth_, segment_, material_, width_, footprint_, tile_class_, to);
     events_.scatter.push_back(launch(kernel, columns, rows));
   };
   pass("scatter_x", light_, between_);

@@ -64,6 +64,7 @@ class Passes {
 
   cl::Buffer light_, depth_, material_, width_, bad_;  // written by prepare
   cl::Buffer footprint_, tile_class_, counters_;       // written by classify
+  cl::Buffer segment_;                                 // surface length per pixel
   cl::Buffer between_;    // written by the horizontal pass; the geometry, if the method is exact
   cl::Buffer scattered_;  // written by the last pass
   cl::Buffer rotations_;

@@ -144,7 +144,9 @@ Plan::Plan(const Device& device, std::vector<Material> materials, const FrameDes
     state->nodes = upload(context, tables.nodes);
     state->program = build_program(
         context, cl::Device(device.id(), true),
-        {options.method == Method::separable ? "scatter.cl" : "exact.cl", "prepare.cl", "classify.cl", "finish.cl"},
+        options.method == Method::separable
+            ? std::vector<std::string>{"prepare.cl", "classify.cl", "segments.cl", "scatter.cl", "finish.cl"}
+            : std::vector<std::string>{"prepare.cl", "classify.cl", "exact.cl", "finish.cl"},
         build_options(*state, static_cast<int>(materials.size()), tables.log2_nodes_per_octave));
   });
   state_ = std::move(state);

@@ -174,7 +174,7 @@ void Pass::add_center(int x, int y, const Rung& rung) {
   const SurfacePixel& pixel = surface_.at(x, y);
   const Taps& taps = materials_[pixel.material].taps;
   for (int c = 0; c < 3; ++c) {
-    const Bounded half_width = exact(rung.core_half_width_px) / (pixel.footprint[axis_] * pixel.width_factor[c]);
+    const Bounded half_width = exact(rung.core_half_width_px) * pixel.segment_mm[axis_] / pixel.width_factor[c];
     means_[c].add(look_up(taps.core, c, half_width * half_width), input_.at(x, y, c));
   }
 }
@@ -194,8 +194,9 @@ void Pass::add_tap(int x, int y, int tap_x, int tap_y, const Rung& rung, const T
   const SurfacePixel& pixel = surface_.at(x, y);
   if (!surface_.shows(pixel.material, tap_x, tap_y)) return;
   const Taps& taps = materials_[pixel.material].taps;
-  const Bounded d2 = distance2(pixel, surface_.at(tap_x, tap_y));
-  const Bounded stretch = exact(rung.footprint) / pixel.footprint[axis_];
+  const SurfacePixel& tap = surface_.at(tap_x, tap_y);
+  const Bounded d2 = distance2(pixel, tap);
+  const Bounded stretch = exact(rung.footprint) * tap.segment_mm[axis_];
   for (int c = 0; c < 3; ++c) {
     const Bounded k = pixel.width_factor[c];
     const Bounded falloff = look_up(taps.falloff, c, d2 / (k * k));

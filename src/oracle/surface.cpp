@@ -104,6 +104,52 @@ Surface::Surface(const Frame& frame, const FrameImages& images, std::span<const 
       decide_touched(pixel, material.taps);
     }
   }
+  for (int y = 0; y < height_; ++y) {
+    for (int x = 0; x < width_; ++x) {
+      SurfacePixel& pixel = pixels_[static_cast<std::size_t>(y) * width_ + x];
+      if (pixel.material >= 0) pixel.segment_mm = {segment(x, y, horizontal), segment(x, y, vertical)};
+    }
+  }
+}
+
+namespace {
+
+Bounded square_root(Bounded a) {
+  constexpr double roundings = 6;  // OpenCL allows 3 ulp
+  const double value = std::sqrt(a.value);
+  return rounded({value, value > 0 ? a.error / value : std::sqrt(a.error)}, roundings);
+}
+
+}  // namespace
+
+Bounded Surface::depth_slope(int x, int y, Axis axis) const {
+  const int dx = axis == horizontal ? 1 : 0;
+  const int dy = 1 - dx;
+  const SurfacePixel& pixel = at(x, y);
+  const bool has_next = shows(pixel.material, x + dx, y + dy);
+  const bool has_previous = shows(pixel.material, x - dx, y - dy);
+  const Bounded z = pixel.position_mm[2];
+  const Bounded forward = has_next ? at(x + dx, y + dy).position_mm[2] - z : exact(0);
+  const Bounded backward = has_previous ? z - at(x - dx, y - dy).position_mm[2] : exact(0);
+  if (!has_next) return backward;
+  if (!has_previous) return forward;
+  // Continuous in both, so that a device that decides otherwise is off by no more than its differences are.
+  const Bounded smaller = std::abs(forward.value) < std::abs(backward.value) ? forward : backward;
+  const bool same_sign = (forward.value > 0) == (backward.value > 0);
+  return {same_sign ? smaller.value : 0, std::max(forward.error, backward.error)};
+}
+
+// The change of position with one pixel: the pixel's size along the axis, and the ray's run over the change of depth.
+Bounded Surface::segment(int x, int y, Axis axis) const {
+  const SurfacePixel& pixel = at(x, y);
+  const Bounded slope = depth_slope(x, y, axis);
+  Bounded sum = slope * slope;
+  for (const Axis i : {horizontal, vertical}) {
+    const Bounded ray = view_.is_perspective() ? pixel.position_mm[i] / pixel.position_mm[2] : exact(0);
+    const Bounded change = i == axis ? ray * slope + exact(1) / pixel.footprint[i] : ray * slope;
+    sum = sum + change * change;
+  }
+  return square_root(sum);
 }
 
 Picture Surface::touched() const {

@@ -21,6 +21,7 @@ struct SurfacePixel {
   std::array<Bounded, 3> position_mm{};
   std::array<Bounded, 2> footprint{};            ///< px per mm along x and y
   std::array<Bounded, 3> width_factor{};         ///< k: the profile is R(r / k) / k^2
+  std::array<Bounded, 2> segment_mm{};           ///< length of surface that the pixel spans along x and y
   std::array<Bounded, 2> effective_footprint{};  ///< footprint times the widest channel's k, px per mm
 };
 
@@ -41,10 +42,16 @@ class Surface {
     return x >= 0 && y >= 0 && x < width_ && y < height_ && at(x, y).material == material;
   }
 
+  /// Change of depth per pixel along an axis, mm: the smaller one of the differences to both neighbours of the same
+  /// material, 0 if they differ in sign.
+  Bounded depth_slope(int x, int y, Axis axis) const;
+
   /// 1 channel: 1 where touched.
   Picture touched() const;
 
  private:
+  Bounded segment(int x, int y, Axis axis) const;
+
   int width_;
   int height_;
   View view_;

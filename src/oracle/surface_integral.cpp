@@ -44,7 +44,7 @@ class Patch {
         x_px_(x + 0.5),
         y_px_(y + 0.5),
         z_mm_(depth(surface, x, y)),
-        slope_{slope(surface, x, y, 1, 0), slope(surface, x, y, 0, 1)} {}
+        slope_{surface.depth_slope(x, y, horizontal).value, surface.depth_slope(x, y, vertical).value} {}
 
   Vec3 at(double u, double v) const {
     return view_.unproject(x_px_ + u, y_px_ + v, z_mm_ + u * slope_[horizontal] + v * slope_[vertical]);
@@ -56,19 +56,6 @@ class Patch {
 
  private:
   static double depth(const Surface& surface, int x, int y) { return surface.at(x, y).position_mm[2].value; }
-
-  /// Change of depth per pixel towards (dx, dy): the smaller one-sided difference within the material.
-  static double slope(const Surface& surface, int x, int y, int dx, int dy) {
-    const int material = surface.at(x, y).material;
-    const bool has_next = surface.shows(material, x + dx, y + dy);
-    const bool has_previous = surface.shows(material, x - dx, y - dy);
-    const double z = depth(surface, x, y);
-    const double forward = has_next ? depth(surface, x + dx, y + dy) - z : 0;
-    const double backward = has_previous ? z - depth(surface, x - dx, y - dy) : 0;
-    if (!has_next) return backward;
-    if (!has_previous) return forward;
-    return std::abs(forward) < std::abs(backward) ? forward : backward;
-  }
 
   View view_;
   double x_px_;

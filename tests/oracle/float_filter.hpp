@@ -19,6 +19,7 @@ class FloatFilter {
               const dermis::Options& options)
       : made_(made), materials_(materials), options_(options), pixels_(made.pixels()) {
     for (std::size_t i = 0; i < pixels_.size(); ++i) prepare(i);
+    for (std::size_t i = 0; i < pixels_.size(); ++i) measure_segments(i);
     std::vector<float> x;
     for (const Pixel& pixel : pixels_) x.insert(x.end(), pixel.x.begin(), pixel.x.end());
     scattered = pass(1, pass(0, x));
@@ -37,6 +38,7 @@ class FloatFilter {
     bool touched = false;
     std::array<float, 3> position{};
     std::array<float, 2> footprint{};
+    std::array<float, 2> segment{};
     std::array<float, 3> k{};
     float spread = 0;
     std::array<float, 3> x{};
@@ -83,6 +85,35 @@ class FloatFilter {
     }
     const float radius = static_cast<float>(material.taps.radius_mm);
     pixel.touched = std::fmax(pixel.footprint[0], pixel.footprint[1]) * pixel.spread * radius >= 0.5F;
+  }
+
+  void measure_segments(std::size_t i) {
+    Pixel& pixel = pixels_[i];
+    if (pixel.material < 0) return;
+    const int place[2] = {static_cast<int>(i) % made_.width, static_cast<int>(i) / made_.width};
+    const int size[2] = {made_.width, made_.height};
+    const int step[2] = {1, made_.width};
+    const bool perspective = made_.camera.projection == dermis::Camera::Projection::perspective;
+    for (int axis = 0; axis < 2; ++axis) {
+      const auto difference = [&](int sign) -> float {
+        const int to = place[axis] + sign;
+        if (to < 0 || to >= size[axis]) return NAN;
+        const Pixel& other = pixels_[static_cast<int>(i) + sign * step[axis]];
+        return other.material == pixel.material ? static_cast<float>(sign) * (other.position[2] - pixel.position[2])
+                                                : NAN;
+      };
+      const float forward = difference(1);
+      const float backward = difference(-1);
+      float slope = std::fabs(forward) < std::fabs(backward) || std::isnan(backward) ? forward : backward;
+      if (std::isnan(slope) || forward * backward <= 0) slope = 0;
+      float sum = slope * slope;
+      for (int j = 0; j < 2; ++j) {
+        const float ray = perspective ? pixel.position[j] / pixel.position[2] : 0;
+        const float change = ray * slope + (j == axis ? 1 / pixel.footprint[j] : 0);
+        sum += change * change;
+      }
+      pixel.segment[axis] = std::sqrt(sum);
+    }
   }
 
   static float look_up(const dermis::RadialTable& table, std::size_t c, float r2) {
@@ -143,7 +174,7 @@ class FloatFilter {
     if (radius_px < 0.5F) return;
     const dermis::Rung& rung = taps.rungs[rung_of(radius_px, taps)];
     for (std::size_t c = 0; c < 3; ++c) {
-      const float half_width = rung.core_half_width_px / (pixel.footprint[axis] * pixel.k[c]);
+      const float half_width = rung.core_half_width_px * pixel.segment[axis] / pixel.k[c];
       float weights = look_up(taps.core, c, half_width * half_width);
       float sum = weights * input[3 * p + c];
       for (const dermis::TapPair& pair : rung.pairs) {
@@ -162,7 +193,7 @@ class FloatFilter {
             r2 += d * d;
           }
           const float falloff = look_up(taps.falloff, c, r2 / (pixel.k[c] * pixel.k[c]));
-          const float weight = rung.footprint / pixel.footprint[axis] * pair.length_mm[c] * falloff / pixel.k[c];
+          const float weight = rung.footprint * pixels_[q].segment[axis] * pair.length_mm[c] * falloff / pixel.k[c];
           weights += weight;
           sum += weight * input[3 * q + c];
         }

@@ -62,17 +62,18 @@ TEST_CASE("the passes compose: across, then down", "[separable]") {
   CHECK(reference.scattered(1, 1) == Approx(9 * 1.0 / 9));
 }
 
-TEST_CASE("depth lengthens the distance between pixels", "[separable]") {
+TEST_CASE("depth lengthens distances and the surface under a pixel", "[separable]") {
   MadeFrame made = three_pixels();
   made.depth = {0, std::sqrt(0.5F), 2};  // r^2 = 1.5 to the left, 2.67 to the right
-  const double left = 0.25 - 0.5 * 0.125;
-  const double step = 2 - static_cast<double>(std::sqrt(0.5F));
-  const double right = 0.125 * (1 - (1 + step * step - 2) / 2);
+  const double low = static_cast<double>(std::sqrt(0.5F));
+  const double step = 2 - low;
+  const double left = (0.25 - 0.5 * 0.125) * std::hypot(1, low);
+  const double right = 0.125 * (1 - (1 + step * step - 2) / 2) * std::hypot(1, step);
   const Reference reference = run(made, tiny_material());
   CHECK(reference.scattered(1, 0) == Approx((0.5 * 10 + left * 1 + right * 100) / (0.5 + left + right)).epsilon(1e-6));
 }
 
-TEST_CASE("perspective: footprint and position by hand", "[separable]") {
+TEST_CASE("perspective: size of a pixel and position by hand", "[separable]") {
   // Focal length 4 px: at 4 mm a pixel is 1 mm, at 2 mm it is 1/2 mm.
   MadeFrame made(2, 1, Camera::perspective(4, 4, 1, 0.5), 0);
   made.light[0] = 6;
@@ -84,8 +85,11 @@ TEST_CASE("perspective: footprint and position by hand", "[separable]") {
   wide.taps.falloff.values = {{0.25F, 0.25F, 0.25F}, {0.125F, 0.125F, 0.125F}, {0.1F, 0.1F, 0.1F}, {0, 0, 0}};
   const double falloff = static_cast<double>(0.1F) * (8 - 4.5625) / 4;
   const Reference reference = run(made, wide);
-  CHECK(reference.scattered(0, 0) == Approx(6 * 0.5 / (0.5 + falloff)));
-  CHECK(reference.scattered(1, 0) == Approx(6 * (falloff / 2) / (0.5 + falloff / 2)));
+  // dP/dx is (1 + 1/8 * 2, 0, -2) at the first pixel, (1/2 - 1/8 * 2, 0, -2) at the second.
+  const double from_second = falloff * std::hypot(0.25, 2);
+  const double from_first = falloff * std::hypot(1.25, 2);
+  CHECK(reference.scattered(0, 0) == Approx(6 * 0.5 / (0.5 + from_second)));
+  CHECK(reference.scattered(1, 0) == Approx(6 * from_first / (0.5 + from_first)));
 }
 
 TEST_CASE("the mask makes the profile narrower", "[separable]") {
@@ -132,6 +136,24 @@ TEST_CASE("the rung is chosen by the widest kernel of the span", "[separable]") 
     INFO(x);
     CHECK((one_wide.scattered(x, 0) != x * x) == (x < 16));
   }
+}
+
+TEST_CASE("a narrow pixel has no say in the rung of its span", "[separable]") {
+  // Material 2 is narrow at a full mask; material 1 is just wide enough at half of it.
+  std::vector materials{tiny_material(1), tiny_material(2)};
+  materials[0].taps.rungs = {{1, 0.5F, {}}, {1, 0.5F, {{1, {1, 1, 1}}}}};
+  materials[0].taps.falloff.values.back() = {0.1F, 0.1F, 0.1F};
+  materials[1].taps.radius_mm = 0.25;
+  MadeFrame made = three_pixels();
+  made.mask = {0.5F, 0.5F, 1};
+  made.material = {1, 1, 2};
+  const Reference narrow = separable(made.frame(), materials, {});
+  CHECK(narrow.touched.values == std::vector<double>{1, 1, 0});
+  CHECK(narrow.scattered(0, 0) == 1);  // rung 0 has no taps
+  materials[1].taps.radius_mm = 0.5;
+  const Reference wide = separable(made.frame(), materials, {});
+  CHECK(wide.touched.values == std::vector<double>{1, 1, 1});
+  CHECK(wide.scattered(0, 0) > 1.5);  // rung 1
 }
 
 TEST_CASE("kernels narrower than half a pixel leave the pixel alone but give light", "[separable]") {

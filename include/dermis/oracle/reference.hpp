@@ -36,13 +36,13 @@ Reference separable(const Frame& frame, std::span<const Material> materials, con
 
 /// The surface integral over all visible pixels of the material,
 ///     M(p) = sum_q R(|P_p - P_q|) E(q) A(q) / sum_q R(|P_p - P_q|) A(q),   A = |Tx x Ty|.
-/// Tx and Ty are the change of position per pixel, from the one-sided difference of depth, within the same material,
-/// that is smaller in size (backward if equal; none if the pixel is alone: then the depth does not change). R is
-/// averaged over the tangent patch of q by Gauss-Legendre quadrature: 4 x 4 points if q is at most 2 pixels away on
-/// both axes, 2 x 2 up to 6, else the centre; the patch of p itself is integrated in polar form, (1 / 2 pi) of the
-/// integral of cdf(boundary) over the angle, by 8-point Gauss-Legendre on each edge. `finer` multiplies the number of
-/// quadrature points per axis, to show what they are worth. Leaves the bounds empty: what a device adds is not derived
-/// here, but set by the tables of R that it reads.
+/// Tx and Ty are the change of position per pixel. The change of depth in them is the smaller one of the differences to
+/// both neighbours of the same material; 0 if they differ in sign, that to the only neighbour if there is one, 0 if
+/// there is none. R is averaged over the tangent patch of q by Gauss-Legendre quadrature: 4 x 4 points if q is at most
+/// 2 pixels away on both axes, 2 x 2 up to 6, else the centre; the patch of p itself is integrated in polar form, (1 /
+/// 2 pi) of the integral of cdf(boundary) over the angle, by 8-point Gauss-Legendre on each edge. `finer` multiplies
+/// the number of quadrature points per axis, to show what they are worth. Leaves the bounds empty: what a device adds
+/// is not derived here, but set by the tables of R that it reads.
 Reference surface_integral(const Frame& frame, std::span<const Material> materials, const Options& options,
                            int finer = 1);
 
