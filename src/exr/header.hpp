@@ -1,0 +1,25 @@
+/// The header of an OpenEXR file, looked at before the OpenEXR library allocates what a damaged file asks for.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace dermis::exr {
+
+/// One attribute as it stands in the file.
+struct HeaderAttribute {
+  std::string name;
+  std::string type;
+  std::string value;
+  bool operator==(const HeaderAttribute&) const = default;
+};
+
+inline constexpr int max_side_px = 65536;
+inline constexpr int max_channels = 1024;
+
+/// The attributes of a flat file of one part that is within the limits. Throws Error(input_missing) if it cannot be
+/// opened, Error(input_unsupported) otherwise.
+std::vector<HeaderAttribute> read_header(const std::filesystem::path& path);
+
+}  // namespace dermis::exr

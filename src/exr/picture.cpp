@@ -1,0 +1,306 @@
+#include <OpenImageIO/imagebuf.h>
+#include <OpenImageIO/imageio.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <cstdlib>
+#include <cstring>
+#include <exception>
+#include <utility>
+
+#include "dermis/error.hpp"
+#include "dermis/exr.hpp"
+#include "exr/header.hpp"
+#include "exr/picture_state.hpp"
+#include "exr/quiet.hpp"
+#include "exr/text.hpp"
+
+namespace dermis::exr {
+namespace {
+
+constexpr int largest_coordinate = 1 << 29;
+constexpr std::size_t longest_name = 255;                          // of an OpenEXR attribute or channel
+constexpr std::size_t batch_bytes = std::size_t{64} << 20;         // read at once
+constexpr int smallest_batch_rows = 32, largest_batch_rows = 256;  // the rows of one block of PIZ, and of DWAB
+
+Format format_of(OIIO::TypeDesc type) {
+  switch (type.basetype) {
+    case OIIO::TypeDesc::HALF:
+      return Format::f16;
+    case OIIO::TypeDesc::UINT:
+      return Format::u32;
+    default:
+      return Format::f32;
+  }
+}
+
+std::vector<ChannelName> channels_of(const OIIO::ImageSpec& spec) {
+  std::vector<ChannelName> channels;
+  for (int c = 0; c < spec.nchannels; ++c) {
+    channels.push_back({spec.channelnames[static_cast<std::size_t>(c)], format_of(spec.channelformat(c))});
+  }
+  return channels;
+}
+
+bool has_attribute(const std::vector<HeaderAttribute>& header, std::string_view name) {
+  return std::any_of(header.begin(), header.end(),
+                     [name](const HeaderAttribute& attribute) { return attribute.name == name; });
+}
+
+/// What is left of a file's description for the next file: no channels, no tiles, no attributes that the reader made
+/// up.
+OIIO::ImageSpec windows_and_attributes(OIIO::ImageSpec spec, const std::vector<HeaderAttribute>& header) {
+  spec.nchannels = 0;
+  spec.channelnames.clear();
+  spec.channelformats.clear();
+  spec.alpha_channel = spec.z_channel = -1;
+  if (spec.tile_width > 0 && !has_attribute(header, "envmap")) {
+    spec.erase_attribute("textureformat");  // would make a mip map of it
+  }
+  spec.tile_width = spec.tile_height = spec.tile_depth = 0;
+  for (const char* name : {"compression", "openexr:lineOrder", "openexr:levelmode", "openexr:roundingmode"}) {
+    spec.erase_attribute(name);
+  }
+  if (!has_attribute(header, "ResolutionUnit")) {
+    spec.erase_attribute("ResolutionUnit");
+  }
+  return spec;
+}
+
+int rows_at_once(const OIIO::ImageSpec& spec, const PixelBlock& pixels) {
+  if (spec.tile_width > 0) {
+    return spec.tile_height;
+  }
+  const std::size_t rows = batch_bytes / pixels.packed_row_bytes() / smallest_batch_rows * smallest_batch_rows;
+  return std::clamp(static_cast<int>(std::min<std::size_t>(rows, largest_batch_rows)), smallest_batch_rows,
+                    largest_batch_rows);
+}
+
+/// Memory is touched row by row as the rows arrive, so that a small file that promises much fails before it takes much.
+bool read_pixels(OIIO::ImageInput& input, const OIIO::ImageSpec& spec, PixelBlock& pixels) {
+  const int step = std::min(rows_at_once(spec, pixels), spec.height);
+  const auto packed =
+      std::make_unique_for_overwrite<std::byte[]>(pixels.packed_row_bytes() * static_cast<std::size_t>(step));
+  for (int row = 0; row < spec.height; row += step) {
+    const int rows = std::min(step, spec.height - row);
+    const int y = spec.y + row;
+    const bool ok = spec.tile_width > 0 ? input.read_tiles(0, 0, spec.x, spec.x + spec.width, y, y + rows, 0, 1, 0,
+                                                           spec.nchannels, OIIO::TypeUnknown, packed.get())
+                                        : input.read_scanlines(0, 0, y, y + rows, 0, 0, spec.nchannels,
+                                                               OIIO::TypeUnknown, packed.get());
+    if (!ok) {
+      return false;
+    }
+    pixels.unpack(packed.get(), row, rows);
+  }
+  return true;
+}
+
+[[noreturn]] void unreadable(const std::filesystem::path& path, std::string_view why) {
+  throw Error(ErrorCode::input_unsupported, escaped(path.string()), escaped(why), "a complete OpenEXR file");
+}
+
+void check_window(const char* name, const Window& window) {
+  const bool sides_ok =
+      std::min(window.width, window.height) >= 1 && std::max(window.width, window.height) <= max_side_px;
+  const bool corner_ok =
+      std::max(std::abs(std::int64_t{window.x}), std::abs(std::int64_t{window.y})) <= largest_coordinate;
+  if (!sides_ok || !corner_ok) {
+    throw Error(ErrorCode::usage, name,
+                std::to_string(window.width) + " x " + std::to_string(window.height) + " at (" +
+                    std::to_string(window.x) + ", " + std::to_string(window.y) + ")",
+                "1 to " + std::to_string(max_side_px) + " pixels on a side, at most " +
+                    std::to_string(largest_coordinate) + " from the origin");
+  }
+}
+
+const Channel& existing(const Picture& picture, std::string_view name) {
+  const Channel* channel = picture.find(name);
+  if (channel == nullptr) {
+    throw Error(ErrorCode::role_missing, "channel", escaped(name), "one of " + channel_list(picture));
+  }
+  return *channel;
+}
+
+std::string joined(std::span<const std::string> names) {
+  std::string out;
+  for (const std::string& name : names) {
+    out += (out.empty() ? "" : ", ") + escaped(name);
+  }
+  return out;
+}
+
+[[noreturn]] void unsuitable(std::span<const std::string> names, std::string_view seen) {
+  throw Error(ErrorCode::input_unsupported, joined(names), seen, "channels of one format, evenly spaced");
+}
+
+Layout layout_of(const Picture& picture, std::span<const std::string> names, const PixelBlock& pixels) {
+  if (names.size() != 1 && names.size() != 3) {
+    throw Error(ErrorCode::usage, "channels of a view", std::to_string(names.size()), "1 or 3");
+  }
+  const Channel& first = existing(picture, names[0]);
+  auto stride = static_cast<std::ptrdiff_t>(bytes_of(first.format));
+  if (names.size() == 3) {
+    const Channel& second = existing(picture, names[1]);
+    const Channel& third = existing(picture, names[2]);
+    if (second.format != first.format || third.format != first.format) {
+      unsuitable(names, "several formats");
+    }
+    stride = static_cast<std::ptrdiff_t>(second.byte_offset) - static_cast<std::ptrdiff_t>(first.byte_offset);
+    const auto next = static_cast<std::ptrdiff_t>(third.byte_offset) - static_cast<std::ptrdiff_t>(second.byte_offset);
+    if (next != stride || stride == 0) {  // a stride of 0 would mean packed
+      unsuitable(names, "channels at uneven distances");
+    }
+  }
+  return {.format = first.format,
+          .channel_stride = stride,
+          .pixel_stride = static_cast<std::ptrdiff_t>(pixels.pixel_bytes()),
+          .row_stride = static_cast<std::ptrdiff_t>(pixels.row_bytes()),
+          .offset = first.byte_offset};
+}
+
+void convert_half(const std::byte* from, std::size_t pixel_bytes, int width, int height, float* to) {
+  const auto stride = static_cast<OIIO::stride_t>(pixel_bytes);
+  OIIO::convert_image(1, width, height, 1, from, OIIO::TypeHalf, stride, stride * width, OIIO::AutoStride, to,
+                      OIIO::TypeFloat, sizeof(float), OIIO::AutoStride, OIIO::AutoStride);
+}
+
+template <typename Value>
+void convert(const std::byte* from, std::size_t pixel_bytes, std::span<float> to) {
+  for (float& out : to) {
+    Value value;
+    std::memcpy(&value, from, sizeof value);
+    out = static_cast<float>(value);
+    from += pixel_bytes;
+  }
+}
+
+}  // namespace
+
+Picture::Picture(Window data, Window display) {
+  check_window("data window", data);
+  check_window("display window", display);
+  OIIO::ImageSpec spec(data.width, data.height, 0, OIIO::TypeFloat);
+  spec.x = data.x;
+  spec.y = data.y;
+  spec.full_x = display.x;
+  spec.full_y = display.y;
+  spec.full_width = display.width;
+  spec.full_height = display.height;
+  state_ = std::make_unique<State>(State{std::move(spec), "zip", PixelBlock(data.width, data.height, {})});
+}
+
+Picture::~Picture() = default;
+Picture::Picture(Picture&&) noexcept = default;
+Picture& Picture::operator=(Picture&&) noexcept = default;
+
+Picture Picture::read(const std::filesystem::path& path) {
+  const std::vector<HeaderAttribute> header = read_header(path);
+  const Quiet quiet;
+  try {
+    const auto input = OIIO::ImageInput::create("openexr");
+    OIIO::ImageSpec spec;
+    if (!input) {
+      unreadable(path, OIIO::geterror());
+    }
+    if (!input->open(path.string(), spec)) {
+      unreadable(path, input->geterror());
+    }
+    Picture picture({spec.x, spec.y, spec.width, spec.height},
+                    {spec.full_x, spec.full_y, spec.full_width, spec.full_height});
+    picture.state_->pixels = PixelBlock(spec.width, spec.height, channels_of(spec));
+    if (!read_pixels(*input, spec, picture.state_->pixels)) {
+      unreadable(path, input->geterror());
+    }
+    picture.state_->compression = spec.get_string_attribute("compression", "zip");
+    picture.state_->spec = windows_and_attributes(std::move(spec), header);
+    return picture;
+  } catch (const Error&) {
+    throw;
+  } catch (const std::exception& error) {
+    unreadable(path, error.what());
+  }
+}
+
+int Picture::width() const { return state_->spec.width; }
+
+int Picture::height() const { return state_->spec.height; }
+
+Window Picture::data_window() const {
+  const OIIO::ImageSpec& spec = state_->spec;
+  return {spec.x, spec.y, spec.width, spec.height};
+}
+
+Window Picture::display_window() const {
+  const OIIO::ImageSpec& spec = state_->spec;
+  return {spec.full_x, spec.full_y, spec.full_width, spec.full_height};
+}
+
+double Picture::pixel_aspect() const {
+  return static_cast<double>(state_->spec.get_float_attribute("PixelAspectRatio", 1.0F));
+}
+
+std::string Picture::compression() const { return state_->compression; }
+
+std::span<const Channel> Picture::channels() const { return state_->pixels.channels(); }
+
+const Channel* Picture::find(std::string_view name) const { return state_->pixels.find(name); }
+
+std::vector<float> Picture::plane(std::string_view name) const {
+  const Channel& channel = existing(*this, name);
+  const PixelBlock& pixels = state_->pixels;
+  const std::byte* from = pixels.data() + channel.byte_offset;
+  std::vector<float> out(static_cast<std::size_t>(width()) * static_cast<std::size_t>(height()));
+  switch (channel.format) {
+    case Format::f16:
+      convert_half(from, pixels.pixel_bytes(), width(), height(), out.data());
+      break;
+    case Format::u32:
+      convert<std::uint32_t>(from, pixels.pixel_bytes(), out);
+      break;
+    default:
+      convert<float>(from, pixels.pixel_bytes(), out);
+  }
+  return out;
+}
+
+void Picture::add_channels(std::span<const std::string> names, Format format) {
+  if (format != Format::f16 && format != Format::f32 && format != Format::u32) {
+    throw Error(ErrorCode::usage, "format of a channel", std::to_string(static_cast<int>(format)), "f16, f32 or u32");
+  }
+  std::vector<ChannelName> more;
+  for (const std::string& name : names) {
+    if (name.empty() || name.size() > longest_name || name.find('\0') != std::string::npos) {
+      throw Error(ErrorCode::usage, "name of a channel", '"' + escaped(name) + '"', "1 to 255 characters");
+    }
+    const bool listed =
+        std::any_of(more.begin(), more.end(), [&name](const ChannelName& channel) { return channel.name == name; });
+    if (find(name) == nullptr && !listed) {
+      more.push_back({name, format});
+    }
+  }
+  const std::size_t count = channels().size() + more.size();
+  if (count > static_cast<std::size_t>(max_channels)) {
+    throw Error(ErrorCode::usage, "channels", std::to_string(count), "at most " + std::to_string(max_channels));
+  }
+  if (!more.empty()) {
+    state_->pixels = state_->pixels.with(more);
+  }
+}
+
+Image Picture::view(std::span<const std::string> names) const {
+  return {.host = state_->pixels.data(), .layout = layout_of(*this, names, state_->pixels)};
+}
+
+OutputImage Picture::view_to_write(std::span<const std::string> names) {
+  return {.host = state_->pixels.data(), .layout = layout_of(*this, names, state_->pixels)};
+}
+
+void Picture::set_attribute(std::string_view name, std::string_view value) {
+  if (name.empty() || name.size() > longest_name || name.find('\0') != std::string_view::npos) {
+    throw Error(ErrorCode::usage, "name of an attribute", '"' + escaped(name) + '"', "1 to 255 characters");
+  }
+  state_->spec.attribute({name.data(), name.size()}, OIIO::string_view(value.data(), value.size()));
+}
+
+}  // namespace dermis::exr

@@ -1,0 +1,337 @@
+#include <OpenImageIO/imageio.h>
+
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <functional>
+#include <limits>
+
+#include "catch.hpp"
+#include "dermis/exr.hpp"
+#include "failure.hpp"
+#include "random.hpp"
+#include "temporary_folder.hpp"
+
+using dermis::Camera;
+using dermis::ErrorCode;
+using dermis::Format;
+using dermis::exr::CameraHint;
+using dermis::exr::find_camera;
+using dermis::exr::FoundCamera;
+using dermis::exr::Picture;
+using dermis::exr::Role;
+using dermis::exr::Roles;
+using Names = std::vector<std::string>;
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+using Vector = std::array<double, 3>;
+using Position = std::array<float, 3>;   // as the file holds it
+using Rotation = std::array<Vector, 3>;  // rows
+
+Rotation random_rotation(Random& random) {
+  std::array<double, 4> q;
+  double length = 0;
+  for (double& value : q) {
+    value = random.uniform(-1, 1);
+    length = std::hypot(length, value);
+  }
+  const auto [w, x, y, z] = std::array{q[0] / length, q[1] / length, q[2] / length, q[3] / length};
+  return {{{1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)},
+           {2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)},
+           {2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)}}};
+}
+
+/// A scene seen by a known camera: what lies where, and what the file then holds.
+struct Scene {
+  int width = 96;
+  int height = 64;
+  Camera camera = Camera::perspective(120, 120, 48, 32);
+  Rotation rotation = {};
+  Vector eye = {};
+  std::function<double(int, int)> depth;
+  std::function<void(int, int, float&, Position&)> spoil = [](int, int, float&, Position&) {};
+};
+
+Position point_seen(const Scene& scene, double x, double y, double z) {
+  const Camera& camera = scene.camera;
+  const double reach = camera.projection == Camera::Projection::perspective ? z : 1;
+  const Vector in_camera = {reach * (x - camera.center_x) / camera.scale_x,
+                            reach * (y - camera.center_y) / camera.scale_y, z};
+  Position point;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vector& row = scene.rotation[k];
+    point[k] = static_cast<float>(scene.eye[k] + row[0] * in_camera[0] + row[1] * in_camera[1] + row[2] * in_camera[2]);
+  }
+  return point;
+}
+
+void store(Picture& picture, const std::string& name, int pixel, float value) {
+  const dermis::OutputImage view = picture.view_to_write(Names{name});
+  std::memcpy(static_cast<std::byte*>(view.host) + view.layout.offset + pixel * view.layout.pixel_stride, &value, 4);
+}
+
+Picture picture_of(const Scene& scene) {
+  Picture picture({-7, 12, scene.width, scene.height}, {0, 0, 200, 150});
+  picture.add_channels(Names{"L.Depth.Z", "L.Position.X", "L.Position.Y", "L.Position.Z"}, Format::f32);
+  for (int y = 0; y < scene.height; ++y) {
+    for (int x = 0; x < scene.width; ++x) {
+      const double z = scene.depth(x, y);
+      auto depth = static_cast<float>(z);
+      Position position = point_seen(scene, x + 0.5, y + 0.5, z);
+      scene.spoil(x, y, depth, position);
+      const int pixel = y * scene.width + x;
+      store(picture, "L.Depth.Z", pixel, depth);
+      store(picture, "L.Position.X", pixel, position[0]);
+      store(picture, "L.Position.Y", pixel, position[1]);
+      store(picture, "L.Position.Z", pixel, position[2]);
+    }
+  }
+  return picture;
+}
+
+/// Hills and a ball, so that the points lie on no plane.
+std::function<double(int, int)> relief(Random& random, double nearest) {
+  const double a = random.uniform(0.05, 0.2);
+  const double b = random.uniform(0.05, 0.2);
+  const double c = random.uniform(0.2, 0.5);
+  return [=](int x, int y) {
+    return nearest * (1.2 + 0.3 * std::sin(a * x) * std::cos(b * y) + ((x / 20 + y / 20) % 2 == 0 ? c : 0));
+  };
+}
+
+Scene random_scene(Random& random, Camera::Projection projection) {
+  Scene scene;
+  scene.rotation = random_rotation(random);
+  scene.eye = {random.uniform(-5, 5), random.uniform(-5, 5), random.uniform(-5, 5)};
+  scene.depth = relief(random, random.uniform(1, 10));
+  const double scale = random.uniform(60, 300);
+  const double aspect = random.uniform(0.5, 2);
+  scene.camera = projection == Camera::Projection::perspective
+                     ? Camera::perspective(scale, scale * aspect, random.uniform(-60, 150), random.uniform(-60, 150))
+                     : Camera::orthographic(scale / 20, scale / 20 * aspect);
+  return scene;
+}
+
+FoundCamera found_in(const Scene& scene) {
+  const Picture picture = picture_of(scene);
+  return find_camera(picture, dermis::exr::find_roles(picture));
+}
+
+Failure failing(const Scene& scene) {
+  return failure_of([&] { found_in(scene); });
+}
+
+void require_near(const Camera& found, const Camera& expected, double relative) {
+  REQUIRE(found.projection == expected.projection);
+  REQUIRE(std::abs(found.scale_x / expected.scale_x - 1) < relative);
+  REQUIRE(std::abs(found.scale_y / expected.scale_y - 1) < relative);
+  if (expected.projection == Camera::Projection::perspective) {
+    // A turn by an angle moves the centre by about that times the focal length.
+    const double reach = std::max(expected.scale_x, expected.scale_y) + 200;
+    REQUIRE(std::abs(found.center_x - expected.center_x) < relative * reach);
+    REQUIRE(std::abs(found.center_y - expected.center_y) < relative * reach);
+  }
+}
+
+/// Rounding to float32 moves a point by at most (|P| + z) 2^-24 or so: with |P| < 40, z > 1 and f < 600 px that
+/// is 1.5e-3 px on a picture of 48 px half width, times 1 / relief (about 10) in the worst case, by sqrt(6144 points)
+/// less on average.
+constexpr double tolerance = 1e-4;
+
+}  // namespace
+
+TEST_CASE("a perspective camera is recovered from any pose, with any centre and pixel aspect") {
+  Random random(21);
+  for (int i = 0; i < 20; ++i) {
+    const Scene scene = random_scene(random, Camera::Projection::perspective);
+    const FoundCamera found = found_in(scene);
+    require_near(found.camera, scene.camera, tolerance);
+    REQUIRE(found.source == "position and depth");
+    REQUIRE(found.residual_units >= 0);
+    REQUIRE(found.residual_units < 1e-4);
+  }
+}
+
+TEST_CASE("an orthographic camera is recovered from any pose, with any pixel aspect") {
+  Random random(22);
+  for (int i = 0; i < 20; ++i) {
+    const Scene scene = random_scene(random, Camera::Projection::orthographic);
+    require_near(found_in(scene).camera, scene.camera, tolerance);
+  }
+}
+
+TEST_CASE("a scene far from the origin is as good as its positions") {
+  Random random(23);
+  Scene scene = random_scene(random, Camera::Projection::perspective);
+  scene.camera = Camera::perspective(120, 120, 48, 32);
+  scene.depth = relief(random, 200);
+  scene.eye = {1e6, -1e6, 1e6};  // a float there is a multiple of 1/16, a twentieth of a pixel at this depth
+  const FoundCamera found = found_in(scene);
+  require_near(found.camera, scene.camera, 2e-3);
+  REQUIRE(found.residual_units > 0.01);
+  REQUIRE(found.residual_units < 0.2);
+}
+
+TEST_CASE("background and edge pixels do not bend the camera") {
+  Random random(24);
+  for (const auto projection : {Camera::Projection::perspective, Camera::Projection::orthographic}) {
+    Scene scene = random_scene(random, projection);
+    scene.spoil = [&](int, int, float& depth, Position& position) {
+      constexpr std::array<float, 6> backgrounds = {1e10F, 99999997952.0F, INFINITY, NAN, 0.0F, -3.0F};
+      const int die = random.integer(0, 19);
+      if (die < 6) {
+        depth = backgrounds[static_cast<std::size_t>(die)];
+      } else if (die == 6) {
+        depth *= static_cast<float>(random.uniform(0.01, 100));
+      } else if (die == 7) {
+        for (float& value : position) {
+          value *= static_cast<float>(random.uniform(-1, 1));
+        }
+      } else if (die == 8) {
+        depth = 1e8F;
+      } else if (die == 9) {
+        position[0] = random.coin() ? NAN : INFINITY;
+      }
+    };
+    const FoundCamera found = found_in(scene);
+    require_near(found.camera, scene.camera, tolerance);
+    // What was spoilt is not counted: nothing is off by more than a pixel of the farthest depth.
+    const double reach = projection == Camera::Projection::perspective ? 20 : 1;
+    REQUIRE(found.residual_units < reach / std::sqrt(scene.camera.scale_x * scene.camera.scale_y));
+  }
+}
+
+TEST_CASE("a large picture is sampled") {
+  Random random(25);
+  Scene scene = random_scene(random, Camera::Projection::perspective);
+  scene.width = 900;
+  scene.height = 700;
+  require_near(found_in(scene).camera, scene.camera, tolerance);
+}
+
+TEST_CASE("a real Cycles file has the focal length it was rendered with") {
+  const Picture picture = Picture::read(std::filesystem::path(DERMIS_DATA) / "monkey_gbuffer.exr");
+  const FoundCamera found = find_camera(picture, dermis::exr::find_roles(picture));
+  REQUIRE(found.camera.projection == Camera::Projection::perspective);
+  REQUIRE(found.camera.scale_x == Approx(1333.333).epsilon(1e-3));
+  REQUIRE(found.camera.scale_y == Approx(1333.333).epsilon(1e-3));
+  REQUIRE(found.camera.center_x == Approx(480).margin(1));
+  REQUIRE(found.camera.center_y == Approx(270).margin(1));
+}
+
+TEST_CASE("scenes that have no unique camera are refused") {
+  Random random(26);
+  Scene scene = random_scene(random, Camera::Projection::perspective);
+  scene.depth = [](int, int) { return 5.0; };
+  const Failure facing = failing(scene);
+  REQUIRE(facing.code == ErrorCode::role_missing);
+  REQUIRE(facing.says("one plane"));
+  REQUIRE(facing.says("--fov"));
+
+  scene.camera = Camera::perspective(120, 120, 48, 32);
+  scene.depth = [](int x, int y) { return 5 / (1 + 0.002 * x - 0.003 * y); };  // a tilted plane
+  REQUIRE(failing(scene).code == ErrorCode::role_missing);
+  scene.camera = Camera::orthographic(10, 10);
+  scene.depth = [](int x, int y) { return 5 + 0.02 * x - 0.03 * y; };
+  REQUIRE(failing(scene).code == ErrorCode::role_missing);
+
+  scene.depth = [](int, int) { return 1e10; };
+  const Failure background = failing(scene);
+  REQUIRE(background.code == ErrorCode::role_missing);
+  REQUIRE(background.says("background"));
+
+  scene.depth = [](int x, int y) { return 5.0 + (x * y) % 7; };
+  scene.spoil = [](int, int, float&, Position& position) { position = {1, 2, 3}; };
+  REQUIRE(failing(scene).says("all the same"));
+}
+
+TEST_CASE("positions that belong to no camera are refused, with how far off they are") {
+  Random random(27);
+  Scene scene = random_scene(random, Camera::Projection::perspective);
+  scene.spoil = [&](int, int, float&, Position& position) {
+    position = {static_cast<float>(random.uniform(-9, 9)), static_cast<float>(random.uniform(-9, 9)), 1};
+  };
+  const Failure noise = failing(scene);
+  REQUIRE(noise.code == ErrorCode::role_missing);
+  REQUIRE(noise.says(" px in the median"));
+
+  // Distance along the ray is not depth.
+  scene = random_scene(random, Camera::Projection::perspective);
+  scene.camera = Camera::perspective(80, 80, 48, 32);
+  scene.spoil = [&](int x, int y, float& depth, Position&) {
+    depth *= static_cast<float>(std::hypot(1, (x + 0.5 - 48) / 80, (y + 0.5 - 32) / 80));
+  };
+  REQUIRE(failing(scene).code == ErrorCode::role_missing);
+
+  // Depth in another unit than the positions.
+  scene = random_scene(random, Camera::Projection::perspective);
+  scene.spoil = [](int, int, float& depth, Position&) { depth *= 100; };
+  REQUIRE(failing(scene).says("100 times"));
+}
+
+TEST_CASE("without the passes and without a hint there is no camera") {
+  Picture picture({0, 0, 4, 4}, {0, 0, 4, 4});
+  picture.add_channels(Names{"L.Depth.Z"}, Format::f32);
+  const Failure failure = failure_of([&] { find_camera(picture, dermis::exr::find_roles(picture)); });
+  REQUIRE(failure.code == ErrorCode::role_missing);
+  REQUIRE(failure.says("no position"));
+  REQUIRE(failure.says("--focal-px"));
+}
+
+TEST_CASE("a hint gives the camera in pixels of the data window") {
+  const TemporaryFolder folder;
+  Picture blank({30, -10, 50, 40}, {10, 20, 200, 100});
+  blank.add_channels(Names{"x"}, Format::f16);
+  const FoundCamera fov = find_camera(blank, {}, {.fov_deg = 90});
+  REQUIRE(fov.source == "--fov");
+  REQUIRE(fov.camera.projection == Camera::Projection::perspective);
+  REQUIRE(fov.camera.scale_x == Approx(100));  // half the width over tan 45
+  REQUIRE(fov.camera.scale_y == Approx(100));
+  REQUIRE(fov.camera.center_x == 110 - 30);
+  REQUIRE(fov.camera.center_y == 70 - -10);
+
+  const FoundCamera focal = find_camera(blank, {}, {.focal_px = 321});
+  REQUIRE(focal.source == "--focal-px");
+  REQUIRE(focal.camera.scale_x == 321);
+  REQUIRE(focal.camera.center_x == 80);
+
+  const FoundCamera ortho = find_camera(blank, {}, {.orthographic_px_per_unit = 7});
+  REQUIRE(ortho.source == "--px-per-unit");
+  REQUIRE(ortho.camera.projection == Camera::Projection::orthographic);
+  REQUIRE(ortho.camera.scale_x == 7);
+  REQUIRE(ortho.camera.scale_y == 7);
+}
+
+TEST_CASE("pixels that are not square have two focal lengths") {
+  const TemporaryFolder folder;
+  OIIO::ImageSpec spec(20, 10, 1, OIIO::TypeHalf);
+  spec.attribute("PixelAspectRatio", 2.0F);  // twice as wide as high
+  const auto output = OIIO::ImageOutput::create("x.exr");
+  const std::vector<float> values(200);
+  REQUIRE(output->open(folder / "wide.exr", spec));
+  REQUIRE(output->write_image(OIIO::TypeFloat, values.data()));
+  REQUIRE(output->close());
+  const Picture picture = Picture::read(folder / "wide.exr");
+  REQUIRE(find_camera(picture, {}, {.focal_px = 100}).camera.scale_y == 200);
+  REQUIRE(find_camera(picture, {}, {.fov_deg = 90}).camera.scale_x == Approx(10));
+  REQUIRE(find_camera(picture, {}, {.fov_deg = 90}).camera.scale_y == Approx(20));
+  REQUIRE(find_camera(picture, {}, {.orthographic_px_per_unit = 5}).camera.scale_y == 10);
+}
+
+TEST_CASE("hints out of range are usage errors") {
+  const Picture picture({0, 0, 4, 4}, {0, 0, 4, 4});
+  const auto code = [&](const CameraHint& hint) { return failure_of([&] { find_camera(picture, {}, hint); }).code; };
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const double bad : {nan, infinity, -infinity, 0.0, -1.0}) {
+    REQUIRE(code({.fov_deg = bad}) == ErrorCode::usage);
+    REQUIRE(code({.focal_px = bad}) == ErrorCode::usage);
+    REQUIRE(code({.orthographic_px_per_unit = bad}) == ErrorCode::usage);
+  }
+  REQUIRE(code({.fov_deg = 180}) == ErrorCode::usage);
+  REQUIRE(code({.fov_deg = 40, .focal_px = 100}) == ErrorCode::usage);
+  REQUIRE(code({.focal_px = 100, .orthographic_px_per_unit = 3}) == ErrorCode::usage);
+  REQUIRE_FALSE(code({.fov_deg = 179}));
+}
