@@ -1,0 +1,23 @@
+/// The subcommands, one per file.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+
+namespace dermis::program {
+
+/// A subcommand: how the command line names it, and what it does. `run` returns the exit code.
+struct Command {
+  CLI::App* app;
+  std::function<int()> run;
+};
+
+Command add_filter(CLI::App& parent);
+Command add_info(CLI::App& parent);
+Command add_devices(CLI::App& parent);
+Command add_profiles(CLI::App& parent);
+Command add_compare(CLI::App& parent);
+Command add_preview(CLI::App& parent);
+Command add_scene(CLI::App& parent);
+
+}  // namespace dermis::program

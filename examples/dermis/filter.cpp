@@ -1,0 +1,181 @@
+// dermis filter: a picture in, the same picture with scattered light out.
+#include <fmt/format.h>
+
+#include <array>
+#include <cstdio>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "commands.hpp"
+#include "dermis/error.hpp"
+#include "dermis/exr.hpp"
+#include "dermis/plan.hpp"
+#include "dermis/version.hpp"
+#include "filter_arguments.hpp"
+#include "loaded_frame.hpp"
+#include "output_file.hpp"
+#include "picture_png.hpp"
+#include "profile_argument.hpp"
+#include "progress_bar.hpp"
+#include "stats_report.hpp"
+#include "stopwatch.hpp"
+#include "surface_pixels.hpp"
+
+namespace dermis::program {
+namespace {
+
+using exr::Role;
+
+void check_outputs(const FilterArguments& arguments) {
+  check_writable("--output", arguments.output);
+  if (!arguments.preview.empty()) check_writable("--preview", arguments.preview);
+  if (!arguments.stats_json.empty() && arguments.stats_json != "-")
+    check_writable("--stats-json", arguments.stats_json);
+}
+
+/// The channels of the beauty, in place; empty if there is none.
+std::vector<std::string> beauty_channels(const exr::Roles& roles) {
+  if (!roles.has(Role::beauty)) return {};
+  const exr::ChannelSum& sum = roles[Role::beauty];
+  if (sum.size() != 1 || sum.front().size() != 3)
+    throw Error(ErrorCode::usage, "--role beauty", fmt::format("{} groups of channels", sum.size()),
+                "one group of three, for the result takes its place");
+  return sum.front();
+}
+
+std::array<std::string, 3> scattered_channels(const exr::Roles& roles) {
+  const std::string prefix = roles.layer.empty() ? "sss." : roles.layer + ".sss.";
+  return {prefix + "R", prefix + "G", prefix + "B"};
+}
+
+std::vector<MaterialReport> report_materials(const std::vector<NamedProfile>& profiles, const LoadedFrame& loaded) {
+  const MaterialCounts counts = count_materials(loaded.material, {});
+  std::vector<MaterialReport> reports;
+  for (const NamedProfile& named : profiles) {
+    MaterialReport report{named.id, without_folders(named.text), kernel_radius_mm(named.profile), 0};
+    if (!named.id) {
+      report.pixels = count_surface(loaded.depth, loaded.mask).pixels;
+    } else if (const auto found = counts.by_id.find(*named.id); found != counts.by_id.end()) {
+      report.pixels = found->second.pixels;
+    } else {
+      fmt::print(stderr, "dermis: warning: --material {}: no pixel has this id\n", *named.id);
+    }
+    reports.push_back(report);
+  }
+  return reports;
+}
+
+/// The progress bar goes before anything else is printed.
+Stats run_plan(const Plan& plan, const Frame& frame) {
+  ProgressBar bar;
+  return plan.run(frame, [&](double share) {
+    bar.update(share);
+    return true;
+  });
+}
+
+void warn_of_bad_pixels(const Stats& stats) {
+  if (stats.pixels_bad > 0)
+    fmt::print(stderr, "dermis: warning: {} pixels have light or albedo that is not finite; they stay as they are\n",
+               stats.pixels_bad);
+}
+
+void write_preview(const std::string& path, const exr::Picture& picture, const exr::Roles& roles) {
+  write_srgb_png(path, picture.width(), picture.height(), exr::load(picture, roles, Role::beauty));
+}
+
+/// The result, and the preview beside it: neither takes its place before both are written.
+void write_pictures(const FilterArguments& arguments, exr::Picture& picture, const exr::Roles& roles) {
+  picture.set_attribute("dermis:version", DERMIS_VERSION);
+  picture.set_attribute("dermis:command", command_text(arguments));
+  std::optional<TemporaryFile> preview;
+  if (!arguments.preview.empty()) {
+    preview.emplace("--preview", arguments.preview);
+    write_preview(preview->path().string(), picture, roles);
+  }
+  picture.write(arguments.output, arguments.compression);
+  if (preview) preview->commit();
+}
+
+void print_stats(const FilterArguments& arguments, const StatsReport& report) {
+  if (arguments.stats) fmt::print("{}", text_of(report));
+  if (arguments.stats_json == "-")
+    fmt::print("{}", json_text_of(report));
+  else if (!arguments.stats_json.empty())
+    write_text("--stats-json", arguments.stats_json, json_text_of(report));
+}
+
+/// What is read before anything is computed. The report takes the camera, the roles and the materials from it.
+struct Input {
+  exr::Picture picture;
+  LoadedFrame loaded;
+};
+
+Input read_input(const FilterArguments& arguments, const std::vector<NamedProfile>& profiles, StatsReport& report) {
+  Input input{exr::Picture::read(arguments.picture.path), {}};
+  const exr::Picture& picture = input.picture;
+  report.roles = exr::find_roles(picture, arguments.picture.roles, arguments.picture.layer);
+  require_roles(picture, report.roles, profiles, report.options);
+  if (!arguments.preview.empty()) exr::require(picture, report.roles, Role::beauty);
+  report.camera = exr::find_camera(picture, report.roles, arguments.picture.camera);
+  input.loaded = load_frame(picture, report.roles, profiles);
+  report.materials = report_materials(profiles, input.loaded);
+  return input;
+}
+
+/// The frame: what was loaded, and the results in the picture's own pixels.
+Frame frame_of(Input& input, const StatsReport& report, double mm_per_unit) {
+  const std::vector<std::string> beauty = beauty_channels(report.roles);
+  const std::array<std::string, 3> scattered = scattered_channels(report.roles);
+  input.picture.add_channels(scattered, Format::f32);
+  Frame frame = input.loaded.frame();
+  frame.camera = report.camera.camera;
+  frame.mm_per_unit = mm_per_unit;
+  frame.scattered = input.picture.view_to_write(scattered);
+  if (!beauty.empty()) {
+    frame.beauty = input.picture.view(beauty);
+    frame.result = input.picture.view_to_write(beauty);
+  }
+  return frame;
+}
+
+int run_filter(const FilterArguments& arguments) {
+  Stopwatch whole;
+  Stopwatch step;
+  StatsReport report;
+  report.options = options_of(arguments);
+  const std::vector<NamedProfile> profiles = parse_profiles(arguments.materials);
+  check_outputs(arguments);
+
+  Input input = read_input(arguments, profiles, report);
+  const Frame frame = frame_of(input, report, *arguments.picture.mm_per_unit);
+  report.times.read_ms = step.lap_ms();
+
+  const Device device = Device::open(arguments.device, arguments.threads);
+  const Plan plan(device, materials_of(profiles), FrameDescription::of(frame), report.options);
+  report.device = device.info();
+  report.times.plan_ms = step.lap_ms();
+
+  report.stats = run_plan(plan, frame);
+  warn_of_bad_pixels(report.stats);
+  report.times.run_ms = step.lap_ms();
+
+  write_pictures(arguments, input.picture, report.roles);
+  report.times.write_ms = step.lap_ms();
+  report.times.total_ms = whole.lap_ms();
+  print_stats(arguments, report);
+  return 0;
+}
+
+}  // namespace
+
+Command add_filter(CLI::App& parent) {
+  CLI::App* app = parent.add_subcommand("filter", "scatter the light of a G-buffer under its surfaces");
+  const auto arguments = std::make_shared<FilterArguments>();
+  add_filter_arguments(*app, *arguments);
+  return {app, [arguments] { return run_filter(*arguments); }};
+}
+
+}  // namespace dermis::program

@@ -1,0 +1,34 @@
+/// The images of a picture that the filter reads, in memory as float.
+#pragma once
+
+#include <vector>
+
+#include "dermis/exr.hpp"
+#include "dermis/frame.hpp"
+#include "dermis/plan.hpp"
+#include "material_arguments.hpp"
+
+namespace dermis::program {
+
+struct LoadedFrame {
+  int width = 0;
+  int height = 0;
+  std::vector<float> light;     ///< RGB
+  std::vector<float> albedo;    ///< RGB, or empty
+  std::vector<float> depth;     ///< or empty
+  std::vector<float> material;  ///< or empty
+  std::vector<float> mask;      ///< or empty
+
+  /// Views of these images, and nothing else of a frame.
+  Frame frame() const;
+};
+
+/// Throws Error(role_missing) if the picture lacks a role that these profiles and options need.
+void require_roles(const exr::Picture& picture, const exr::Roles& roles, const std::vector<NamedProfile>& profiles,
+                   const Options& options);
+
+/// The roles that the picture has; ids only if the profiles tell materials apart.
+/// Throws Error(input_unsupported) if a role has the wrong number of channels.
+LoadedFrame load_frame(const exr::Picture& picture, const exr::Roles& roles, const std::vector<NamedProfile>& profiles);
+
+}  // namespace dermis::program

@@ -1,0 +1,42 @@
+/// --material and --profile: which surfaces scatter, and how.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "dermis/plan.hpp"
+
+namespace dermis::program {
+
+struct MaterialArguments {
+  std::vector<std::string> materials;  ///< ID=PROFILE
+  std::string profile;
+};
+
+/// A profile as the user wrote it, and the material it is for; without an id it is for every pixel.
+struct NamedProfile {
+  std::optional<int> id;
+  std::string text;
+  Profile profile;
+};
+
+void add_material_arguments(CLI::App& app, MaterialArguments& arguments);
+
+/// All profiles that were asked for. Throws Error(usage) for what is malformed or given twice.
+std::vector<NamedProfile> parse_profiles(const MaterialArguments& arguments);
+
+/// The same as the filter takes them.
+std::vector<Material> materials_of(const std::vector<NamedProfile>& profiles);
+
+/// True if they tell materials apart by their ids.
+bool have_ids(const std::vector<NamedProfile>& profiles);
+
+/// True if the width of any of them follows the albedo of the pixel.
+bool any_follows_albedo(const std::vector<NamedProfile>& profiles);
+
+/// The radius beyond which the separable passes do not look, mm. If the width follows the albedo: the most it can be.
+double kernel_radius_mm(const Profile& profile);
+
+}  // namespace dermis::program

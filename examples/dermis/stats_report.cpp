@@ -1,0 +1,116 @@
+#include "stats_report.hpp"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "dermis/version.hpp"
+#include "json_text.hpp"
+#include "role_text.hpp"
+
+namespace dermis::program {
+namespace {
+
+using nlohmann::json;
+
+std::string_view name_of(Method method) { return method == Method::exact ? "exact" : "separable"; }
+
+json json_of(const DeviceInfo& device) {
+  return {{"name", device.name},
+          {"platform", device.platform},
+          {"driver", device.driver},
+          {"type", device.type},
+          {"compute_units", device.compute_units},
+          {"vector_width", device.vector_width},
+          {"memory_bytes", device.memory_bytes},
+          {"max_buffer_bytes", device.max_buffer_bytes}};
+}
+
+json json_of(const MaterialReport& material) {
+  return {{"id", material.id ? json(*material.id) : json(nullptr)},
+          {"profile", material.profile},
+          {"radius_mm", material.radius_mm},
+          {"pixels", material.pixels}};
+}
+
+json times_of(const StatsReport& report) {
+  return {{"read", report.times.read_ms},       {"plan", report.times.plan_ms},
+          {"prepare", report.stats.prepare_ms}, {"classify", report.stats.classify_ms},
+          {"scatter", report.stats.scatter_ms}, {"finish", report.stats.finish_ms},
+          {"run", report.times.run_ms},         {"write", report.times.write_ms},
+          {"total", report.times.total_ms}};
+}
+
+double percent(std::int64_t part, std::int64_t whole) {
+  return whole > 0 ? 100.0 * static_cast<double>(part) / static_cast<double>(whole) : 0;
+}
+
+std::string counted(std::string_view name, std::int64_t part, std::int64_t whole) {
+  return fmt::format("  {:<18}{:>12}  {:5.1f} %\n", name, part, percent(part, whole));
+}
+
+std::string text_of_steps(const StatsReport& report) {
+  const Stats& stats = report.stats;
+  const StepTimes& times = report.times;
+  std::string text = "time, ms\n";
+  const auto line = [&](std::string_view name, double ms) { text += fmt::format("  {:<18}{:>12.1f}\n", name, ms); };
+  line("read", times.read_ms);
+  line("plan", times.plan_ms);
+  line("run", times.run_ms);
+  line("  prepare", stats.prepare_ms);
+  line("  classify", stats.classify_ms);
+  line("  scatter", stats.scatter_ms);
+  line("  finish", stats.finish_ms);
+  line("write", times.write_ms);
+  line("total", times.total_ms);
+  return text;
+}
+
+}  // namespace
+
+std::string text_of(const StatsReport& report) {
+  const Stats& stats = report.stats;
+  const Options& options = report.options;
+  std::string text = fmt::format("device      {} ({}, {} compute units)\n", report.device.name, report.device.platform,
+                                 report.device.compute_units);
+  text += fmt::format("camera      {}\n", text_of(report.camera));
+  text += fmt::format("method      {}", name_of(options.method));
+  if (options.method == Method::separable)
+    text += fmt::format(", {} taps, jitter {}, seed {}", options.taps, options.jitter, options.seed);
+  for (const MaterialReport& material : report.materials)
+    text +=
+        fmt::format("\nmaterial {:<2} {}, {} pixels, radius {:.3g} mm", material.id ? std::to_string(*material.id) : "",
+                    material.profile, material.pixels, material.radius_mm);
+  text += fmt::format("\ntiles       {}\n", stats.tiles);
+  text += counted("computed", stats.tiles_computed, stats.tiles);
+  text += counted("without material", stats.tiles_without_material, stats.tiles);
+  text += counted("narrow", stats.tiles_narrow, stats.tiles);
+  text += fmt::format("pixels      {}\n", stats.pixels);
+  text += counted("scattered", stats.pixels_scattered, stats.pixels);
+  text += counted("without material", stats.pixels_without_material, stats.pixels);
+  text += counted("narrow", stats.pixels_narrow, stats.pixels);
+  text += counted("bad", stats.pixels_bad, stats.pixels);
+  return text + text_of_steps(report);
+}
+
+std::string json_text_of(const StatsReport& report) {
+  const Stats& stats = report.stats;
+  json object = {
+      {"version", DERMIS_VERSION},    {"device", json_of(report.device)}, {"method", name_of(report.options.method)},
+      {"taps", report.options.taps},  {"jitter", report.options.jitter},  {"seed", report.options.seed},
+      {"times_ms", times_of(report)}, {"camera", json_of(report.camera)}, {"roles", json_of(report.roles)},
+      {"materials", json::array()}};
+  object["tiles"] = {{"total", stats.tiles},
+                     {"computed", stats.tiles_computed},
+                     {"without_material", stats.tiles_without_material},
+                     {"narrow", stats.tiles_narrow}};
+  object["pixels"] = {{"total", stats.pixels},
+                      {"scattered", stats.pixels_scattered},
+                      {"without_material", stats.pixels_without_material},
+                      {"narrow", stats.pixels_narrow},
+                      {"bad", stats.pixels_bad}};
+  for (const MaterialReport& material : report.materials) object["materials"].push_back(json_of(material));
+  return json_text(object);
+}
+
+}  // namespace dermis::program

@@ -1,0 +1,27 @@
+/// How many pixels the materials of a picture have, and how far away they are.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <span>
+
+namespace dermis::program {
+
+struct SurfacePixels {
+  std::int64_t pixels = 0;
+  std::optional<double> median_depth_units;  ///< of those that are not background, if there are any
+};
+
+struct MaterialCounts {
+  std::map<int, SurfacePixels> by_id;
+  std::int64_t without_id = 0;  ///< pixels whose id is not a whole number from 0 to 65535
+};
+
+/// `depth` may be empty.
+MaterialCounts count_materials(std::span<const float> ids, std::span<const float> depth);
+
+/// The pixels that are not background; where there is a mask, those where it is above 0.
+SurfacePixels count_surface(std::span<const float> depth, std::span<const float> mask);
+
+}  // namespace dermis::program

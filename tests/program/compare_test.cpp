@@ -1,0 +1,131 @@
+// dermis compare: what it prints and how it exits.
+#include <OpenImageIO/imageio.h>
+
+#include <string>
+#include <vector>
+
+#include "catch.hpp"
+#include "dermis/exr.hpp"
+#include "made_picture.hpp"
+#include "random.hpp"
+#include "run_program.hpp"
+#include "temporary_folder.hpp"
+
+using dermis::exr::Picture;
+
+namespace {
+
+bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+/// A scene, and a copy in which one value is off.
+struct Pair {
+  TemporaryFolder folder;
+  int width = 0;
+  int height = 0;
+  int x = 0;
+  int y = 0;
+  std::string a;
+  std::string b;
+
+  explicit Pair(std::uint32_t salt) {
+    Random random(salt);
+    width = random.integer(5, 40);
+    height = random.integer(5, 40);
+    x = random.integer(0, width - 1);
+    y = random.integer(0, height - 1);
+    a = folder / "a.exr";
+    b = folder / "b.exr";
+    make_scene(b, "touching", width, height, 4);
+    std::vector<float> green = Picture::read(b).plane("ViewLayer.DiffCol.G");
+    green[static_cast<std::size_t>(y * width + x)] = 8.5F;
+    PictureCopy(b).with("ViewLayer.DiffCol.G", green).write(a);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("a picture is identical to itself") {
+  const Pair pair(20);
+  const Outcome outcome = run_program({"compare", pair.b, pair.b, "--identical", "--max-rel-l2", "0"});
+  CHECK(outcome.exit_code == 0);
+  CHECK(outcome.errors.empty());
+  CHECK(has(outcome.output, "ViewLayer.DiffCol"));
+  CHECK(has(outcome.output, "\nidentical\n"));
+}
+
+TEST_CASE("one value that is off is found with its pixel and both values") {
+  const Pair pair(21);
+  const Outcome outcome = run_program({"compare", pair.a, pair.b, "--identical", "--max-rel-l2", "1e-6"});
+  INFO(outcome.output);
+  CHECK(outcome.exit_code == 1);
+  const std::string place =
+      "at (" + std::to_string(pair.x) + ", " + std::to_string(pair.y) + ") ViewLayer.DiffCol.G: 8.5 and ";
+  CHECK(has(outcome.output, place));
+  CHECK(has(outcome.output, "not identical: ViewLayer.DiffCol.G, 1 values\n"));
+
+  CHECK(run_program({"compare", pair.a, pair.b}).exit_code == 0);
+  CHECK(run_program({"compare", pair.a, pair.b, "--max-rel-l2", "1e9"}).exit_code == 0);
+  CHECK(run_program({"compare", pair.a, pair.b, "--identical"}).exit_code == 1);
+  CHECK(run_program({"compare", pair.a, pair.b, "--identical", "--channels", "ViewLayer.Combined"}).exit_code == 0);
+}
+
+TEST_CASE("a mask restricts to pixels where a channel of the reference has a value") {
+  const Pair pair(22);
+  const std::vector<float> ids = Picture::read(pair.b).plane("ViewLayer.IndexMA.X");
+  const float id = ids[static_cast<std::size_t>(pair.y * pair.width + pair.x)];
+  const auto run = [&](float value) {
+    return run_program({"compare", pair.a, pair.b, "--max-rel-l2", "0", "--mask-channel",
+                        "ViewLayer.IndexMA.X=" + std::to_string(value)})
+        .exit_code;
+  };
+  const auto run_identical = [&](float value) {
+    return run_program({"compare", pair.a, pair.b, "--identical", "--mask-channel",
+                        "ViewLayer.IndexMA.X=" + std::to_string(value)})
+        .exit_code;
+  };
+  CHECK(run_identical(id) == 1);
+  CHECK(run_identical(3 - id) == 0);
+  CHECK(run(id) == 1);
+  CHECK(run(3 - id) == 0);
+  check_refused(run_program({"compare", pair.a, pair.b, "--mask-channel", "ViewLayer.IndexMA.X=9"}), 2, {"no pixel"});
+  check_refused(run_program({"compare", pair.a, pair.b, "--mask-channel", "Nosuch.X=1"}), 5, {"Nosuch.X"});
+  check_refused(run_program({"compare", pair.a, pair.b, "--mask-channel", "ViewLayer.IndexMA.X"}), 2,
+                {"CHANNEL=VALUE"});
+}
+
+TEST_CASE("channels that one picture lacks are named; none in common is an error") {
+  const Pair pair(23);
+  const std::string less = pair.folder / "less.exr";
+  PictureCopy(pair.b).without("ViewLayer.Normal").write(less);
+  const std::string output = run_well({"compare", less, pair.b});
+  CHECK(has(output, "only in B: "));
+  CHECK(has(output, "ViewLayer.Normal.X"));
+  CHECK_FALSE(has(output, "only in A"));
+  check_refused(run_program({"compare", less, pair.b, "--channels", "ViewLayer.Normal"}), 4,
+                {"no channel that both have"});
+}
+
+TEST_CASE("pictures of different size cannot be compared") {
+  const Pair pair(24);
+  const std::string wide = pair.folder / "wide.exr";
+  make_scene(wide, "step", pair.width + 1, pair.height, 4);
+  check_refused(run_program({"compare", wide, pair.b}), 4, {std::to_string(pair.width + 1), "as B"});
+}
+
+TEST_CASE("the heat map is brightest where the difference is") {
+  const Pair pair(25);
+  const std::string path = pair.folder / "heat.png";
+  const std::string output = run_well({"compare", pair.a, pair.b, "--heatmap", path});
+  CHECK(has(output, "heat map: brightest = "));
+  const auto png = OIIO::ImageInput::open(path);
+  REQUIRE(png);
+  REQUIRE(png->spec().width == pair.width);
+  REQUIRE(png->spec().height == pair.height);
+  std::vector<unsigned char> pixels(static_cast<std::size_t>(pair.width * pair.height * 3));
+  REQUIRE(png->read_image(0, 0, 0, 3, OIIO::TypeDesc::UINT8, pixels.data()));
+  for (int i = 0; i < pair.width * pair.height; ++i) {
+    const int brightness = pixels[static_cast<std::size_t>(i * 3)] + pixels[static_cast<std::size_t>(i * 3 + 1)];
+    const bool there = i == pair.y * pair.width + pair.x;
+    REQUIRE((there ? brightness > 450 : brightness < 20));
+  }
+}
