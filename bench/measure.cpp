@@ -1,0 +1,160 @@
+#include "measure.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "copy_time.hpp"
+#include "dermis/oracle/compare.hpp"
+
+namespace dermis::bench {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double since_ms(Clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+double percentile(std::vector<double> values, double share) {
+  std::sort(values.begin(), values.end());
+  return values[static_cast<std::size_t>(std::lround(share * static_cast<double>(values.size() - 1)))];
+}
+
+oracle::Picture picture_of(const Subject& subject, const std::vector<float>& values) {
+  oracle::Picture picture(subject.width, subject.height, 3);
+  picture.values.assign(values.begin(), values.end());
+  return picture;
+}
+
+/// 1 where the pixel has the id of material `index`.
+oracle::Picture mask_of(const Subject& subject, std::size_t index) {
+  oracle::Picture mask(subject.width, subject.height, 1);
+  for (std::size_t i = 0; i < subject.ids.size(); ++i) {
+    mask.values[i] = subject.ids[i] == static_cast<float>(subject.materials[index].id) ? 1 : 0;
+  }
+  return mask;
+}
+
+/// A plan and what its runs took.
+struct Running {
+  Row row;
+  Plan plan;
+  std::vector<float> scattered;
+  std::vector<double> total_ms, scatter_ms;
+
+  Running(const Device& device, const Subject& subject, const Case& what)
+      : plan(timed_plan(device, subject, what.options, row.plan_ms)), scattered(subject.light.size()) {
+    row.what = what;
+  }
+
+  void run(const Subject& subject) {
+    const Stats stats = plan.run(subject.frame(scattered));
+    total_ms.push_back(stats.total_ms);
+    scatter_ms.push_back(stats.scatter_ms);
+  }
+
+  static Plan timed_plan(const Device& device, const Subject& subject, const Options& options, double& ms) {
+    std::vector<float> none(subject.light.size());
+    const auto start = Clock::now();
+    Plan plan(device, subject.materials, FrameDescription::of(subject.frame(none)), options);
+    ms = since_ms(start);
+    return plan;
+  }
+};
+
+void add_times(Row& row, const Running& running, double copy_ms) {
+  row.ms = percentile(running.total_ms, 0.5);
+  row.ms_p10 = percentile(running.total_ms, 0.1);
+  row.ms_p90 = percentile(running.total_ms, 0.9);
+  row.scatter_ms = percentile(running.scatter_ms, 0.5);
+  row.copy_ratio = row.ms / copy_ms;
+}
+
+}  // namespace
+
+Frame Subject::frame(std::vector<float>& scattered) const {
+  Frame frame{.width = width, .height = height, .camera = camera, .mm_per_unit = mm_per_unit};
+  frame.light.host = light.data();
+  frame.depth.host = depth.data();
+  frame.material.host = ids.data();
+  frame.scattered.host = scattered.data();
+  return frame;
+}
+
+std::size_t Subject::bytes() const { return (2 * light.size() + depth.size() + ids.size()) * sizeof(float); }
+
+Subject load_subject(const std::filesystem::path& path, double mm_per_unit, const std::vector<int>& ids,
+                     const std::vector<std::string>& names) {
+  const exr::Picture picture = exr::Picture::read(path);
+  const exr::Roles roles = exr::find_roles(picture);
+  for (const exr::Role role : {exr::Role::light, exr::Role::depth, exr::Role::material})
+    exr::require(picture, roles, role);
+  Subject subject{.name = path.stem().string(),
+                  .width = picture.width(),
+                  .height = picture.height(),
+                  .camera = exr::find_camera(picture, roles).camera,
+                  .mm_per_unit = mm_per_unit,
+                  .light = exr::load(picture, roles, exr::Role::light),
+                  .depth = exr::load(picture, roles, exr::Role::depth),
+                  .ids = exr::load(picture, roles, exr::Role::material),
+                  .materials = {},
+                  .material_names = names};
+  for (std::size_t i = 0; i < ids.size(); ++i) subject.materials.push_back({ids[i], preset(names[i]).profile});
+  return subject;
+}
+
+Measurement measure(const Device& device, const Subject& subject, const std::vector<Case>& cases, int rounds,
+                    const std::function<void(const std::string&)>& report) {
+  Measurement result;
+  report("exact (takes the longest)");
+  Running exact(device, subject, {"exact", {.method = Method::exact}});
+  exact.run(subject);
+
+  std::vector<Running> running;
+  for (const Case& what : cases) {
+    report("plan of " + what.name);
+    running.emplace_back(device, subject, what);
+  }
+  Copy copy(subject.bytes(), device.info().compute_units);
+  std::vector<double> copy_ms;
+  constexpr int rounds_to_drop = 2;
+  for (int round = 0; round < rounds + rounds_to_drop; ++round) {
+    report("round " + std::to_string(round + 1) + " of " + std::to_string(rounds + rounds_to_drop));
+    copy_ms.push_back(copy.run());
+    for (Running& one : running) one.run(subject);
+    if (round + 1 == rounds_to_drop) {
+      copy_ms.clear();
+      for (Running& one : running) {
+        one.total_ms.clear();
+        one.scatter_ms.clear();
+      }
+    }
+  }
+
+  result.copy_ms = percentile(copy_ms, 0.5);
+  result.exact = exact.row;
+  add_times(result.exact, exact, result.copy_ms);
+  result.exact.rel_l2.assign(subject.materials.size(), 0.0);
+  const oracle::Picture truth = picture_of(subject, exact.scattered);
+  std::vector<oracle::Picture> masks;
+  for (std::size_t i = 0; i < subject.materials.size(); ++i) {
+    masks.push_back(mask_of(subject, i));
+    result.pixels.push_back(std::count(masks[i].values.begin(), masks[i].values.end(), 1.0));
+  }
+  for (Running& one : running) {
+    add_times(one.row, one, result.copy_ms);
+    one.row.loads = 2.0 * one.row.what.options.taps;
+    const oracle::Picture picture = picture_of(subject, one.scattered);
+    for (const oracle::Picture& mask : masks) {
+      const oracle::Difference difference = oracle::compare(picture, truth, mask);
+      one.row.rel_l2.push_back(difference.relative_l2);
+      one.row.max_error = std::max(one.row.max_error, difference.max);
+    }
+    result.rows.push_back(one.row);
+  }
+  return result;
+}
+
+}  // namespace dermis::bench
