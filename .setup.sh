@@ -1,0 +1,43 @@
+# Sourced by ./demo and ./check, from the top of the checkout: packages, and an environment that needs no home.
+# shellcheck shell=bash disable=SC2034
+
+# OpenImageIO's CMake package wants its tools to be there (openimageio-tools).
+build_packages=(g++ cmake ninja-build pkg-config pocl-opencl-icd ocl-icd-opencl-dev libopenimageio-dev openimageio-tools
+  libeigen3-dev libcli11-dev nlohmann-json3-dev libfmt-dev)
+
+jobs=$(nproc)
+logs=$PWD/build/logs
+mkdir -p "$logs"
+
+# Kernels that PoCL has compiled; its own choice needs HOME.
+export POCL_CACHE_DIR=${POCL_CACHE_DIR:-$PWD/build/pocl-cache}
+mkdir -p "$POCL_CACHE_DIR"
+
+# say TEXT...: a line for the person who watches.
+say() { printf '%s\n' "$*"; }
+
+# install_packages NAME...: installs what is missing. On a system without dpkg it trusts that all is there.
+install_packages() {
+  command -v dpkg-query >/dev/null || return 0
+  local missing=() name as_root=()
+  for name in "$@"; do
+    [ "$(dpkg-query -W -f '${db:Status-Status}' "$name" 2>/dev/null)" = installed ] || missing+=("$name")
+  done
+  [ ${#missing[@]} -gt 0 ] || return 0
+
+  if [ "$(id -u)" -ne 0 ]; then
+    if ! command -v sudo >/dev/null; then
+      say "missing packages; as root: apt-get install --no-install-recommends ${missing[*]}" >&2
+      return 1
+    fi
+    as_root=(sudo)
+  fi
+  say "installing ${missing[*]}"
+  {
+    "${as_root[@]}" apt-get update -qq &&
+      "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -qq -y --no-install-recommends "${missing[@]}"
+  } </dev/null >"$logs/apt.log" 2>&1 || {
+    tail -n 30 "$logs/apt.log" >&2
+    return 1
+  }
+}
