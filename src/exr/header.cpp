@@ -125,8 +125,11 @@ constexpr std::array<TypeSize, 24> fixed_sizes = {{{"box2f", 16},
 bool has_right_size(const HeaderAttribute& attribute) {
   if (attribute.type == "preview") {
     const std::string_view value = attribute.value;
-    return value.size() >= 8 &&
-           std::uint64_t{4} * little_endian(value) * little_endian(value.substr(4)) == value.size() - 8;
+    if (value.size() < 8) {
+      return false;
+    }
+    const std::uint64_t pixels = std::uint64_t{little_endian(value)} * little_endian(value.substr(4));
+    return pixels <= value.size() && 4 * pixels == value.size() - 8;
   }
   const auto it = std::find_if(fixed_sizes.begin(), fixed_sizes.end(),
                                [&attribute](const TypeSize& size) { return size.type == attribute.type; });
