@@ -46,8 +46,8 @@ class Device {
   cl_device_id id() const;
 
  private:
-  friend class Plan;
   struct State;
+  friend Device with_kernel_shape(const Device& device, int vector_width, std::string_view type);
   Device() = default;
   std::shared_ptr<const State> state_;
 };

@@ -141,6 +141,15 @@ Device Device::adopt(cl_context context, cl_device_id device) {
   });
 }
 
+Device with_kernel_shape(const Device& device, int vector_width, std::string_view type) {
+  Device::State state = *device.state_;
+  state.info.vector_width = vector_width;
+  state.info.type = type;
+  Device result;
+  result.state_ = std::make_shared<Device::State>(state);
+  return result;
+}
+
 const DeviceInfo& Device::info() const { return state_->info; }
 
 cl_context Device::context() const { return state_->context(); }

@@ -12,4 +12,8 @@ struct Device::State {
   DeviceInfo info;
 };
 
+/// The same device, whose kernels are built as for one of another vector width (1, 4, 8 or 16) and type. So that the
+/// code that a GPU gets can be tested on a CPU.
+Device with_kernel_shape(const Device& device, int vector_width, std::string_view type);
+
 }  // namespace dermis

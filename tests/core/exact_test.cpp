@@ -1,5 +1,6 @@
 // The exact method against the oracle's surface integral.
 #include "catch.hpp"
+#include "core/device.hpp"
 #include "core/oracle_material.hpp"
 #include "dermis/oracle/compare.hpp"
 #include "dermis/oracle/scenes.hpp"
@@ -42,6 +43,23 @@ TEST_CASE("the exact method equals the surface integral on the analytic scenes",
       CHECK(oracle::compare(before, expected.scattered).relative_l2 > 1e-2);  // scattering did change the picture
     }
   }
+}
+
+TEST_CASE("the exact method does not depend on vector width or work-items", "[exact]") {
+  const Device device = Device::open();
+  const oracle::Scene scene = oracle::scene("sphere", 45, 31, 3);
+  const std::vector<dermis::Material> materials = {{1, dermis::preset("skin").profile}};
+  const auto filtered = [&](const Device& shaped) {
+    std::vector<float> scattered(scene.light.size());
+    Frame frame = scene.frame();
+    frame.scattered.host = scattered.data();
+    Plan(shaped, materials, FrameDescription::of(frame), {.method = Method::exact}).run(frame);
+    return scattered;
+  };
+  const std::vector<float> expected = filtered(device);
+  CHECK(expected != scene.light);
+  CHECK(filtered(with_kernel_shape(device, 4, "CPU")) == expected);
+  CHECK(filtered(with_kernel_shape(device, 1, "GPU")) == expected);
 }
 
 TEST_CASE("separable comes near exact on a plane, and nearer with more taps", "[exact]") {

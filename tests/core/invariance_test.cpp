@@ -2,7 +2,7 @@
 #include <cstring>
 
 #include "catch.hpp"
-#include "core/opencl.hpp"
+#include "core/device.hpp"
 #include "core/random_frame.hpp"
 #include "dermis/plan.hpp"
 
@@ -86,6 +86,14 @@ TEST_CASE("the result does not depend on how it is computed", "[invariance]") {
       CAPTURE(threads);
       CHECK(run(Device::open({}, threads), frame, frame.options) == expected);
     }
+  }
+
+  SECTION("any vector width, a tile or a pixel to a work-item") {
+    for (const int vector_width : {1, 4, 8, 16}) {
+      CAPTURE(vector_width);
+      CHECK(run(with_kernel_shape(device, vector_width, "CPU"), frame, frame.options) == expected);
+    }
+    CHECK(run(with_kernel_shape(device, 1, "GPU"), frame, frame.options) == expected);
   }
 
   SECTION("any strides") {
