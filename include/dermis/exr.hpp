@@ -55,7 +55,7 @@ class Picture {
   std::span<const Channel> channels() const;
   const Channel* find(std::string_view name) const;  ///< nullptr if there is none
 
-  /// The values of one channel, as float.
+  /// The values of one channel, as float. Throws Error(role_missing) if there is none.
   std::vector<float> plane(std::string_view name) const;
 
   /// Adds channels of one format, filled with zeros; a channel that is there already keeps its format and values.
@@ -71,8 +71,8 @@ class Picture {
   void set_attribute(std::string_view name, std::string_view value);
 
   /// Writes to a temporary file beside `path`, then renames it. `compression` is an OpenEXR name ("zip", "piz", "dwaa",
-  /// ...); if empty that of the file that was read, or "zip" if that loses data. Throws Error(output), leaving what was
-  /// at `path`.
+  /// ...); if empty that of the file that was read, or "zip" if that loses data. Throws Error(usage) for another name,
+  /// Error(output) if the file cannot be written, leaving what was at `path`.
   void write(const std::filesystem::path& path, std::string_view compression = {}) const;
 
  private:
@@ -102,9 +102,10 @@ struct Roles {
 
 /// Finds roles by the names that Blender and Cycles give (2.8 to 5.x), in any case. Each override is "role=channels":
 /// channels are full names separated by commas (1 or 3), or one prefix that stands for its .R .G .B or .X .Y .Z (or
-/// single) channels; "+" adds several. `layer` picks a view layer if there are several; the first one if empty. Throws
-/// Error(usage) for a malformed override, Error(role_missing) that lists the channels there are if one names a channel
-/// that is not.
+/// single) channels; "+" adds several. `layer` picks a view layer if there are several; if empty, the first one with
+/// diffuse light. What the layer lacks is looked for outside all layers.
+/// Throws Error(usage) for a malformed override, Error(role_missing) that lists the channels there are if one names a
+/// channel that is not, or the layers if there is no such layer.
 Roles find_roles(const Picture& picture, std::span<const std::string> overrides = {}, std::string_view layer = {});
 
 /// The summed values of a role, packed, as float; empty if the picture does not have it.

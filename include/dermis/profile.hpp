@@ -37,7 +37,7 @@ class Profile {
 
   /// A sum of Gaussians (d'Eon and Luebke 2007, eq. 14.6). At least one term; every channel needs a
   /// positive weight.
-  static Profile gaussians(std::vector<GaussianTerm> terms);
+  static Profile gaussians(const std::vector<GaussianTerm>& terms);
 
   /// R(r), 1/mm^2, for r_mm > 0. Burley's profile grows as 1/r towards r = 0.
   double radial(int channel, double r_mm) const;

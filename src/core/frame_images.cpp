@@ -149,7 +149,7 @@ BoundImages::BoundImages(const cl::Context& context, const Frame& frame,
   const auto host_extent = [&](const FrameImage& image) {
     const Extent extent = extent_of(image, frame.width, frame.height);
     const auto* host = static_cast<const std::byte*>(image.host);
-    return HostRange{host + extent.begin, host + extent.end, image.is_output, {}};
+    return HostRange{host + extent.begin, host + extent.end, image.is_output};
   };
   for (const FrameImage& image : images) {
     if (image.host != nullptr) ranges.push_back(host_extent(image));
@@ -163,10 +163,10 @@ BoundImages::BoundImages(const cl::Context& context, const Frame& frame,
       host_ranges_.push_back(range);
     }
   }
-  for (HostRange& range : host_ranges_) {
+  for (const HostRange& range : host_ranges_) {
     const cl_mem_flags access = range.written ? CL_MEM_READ_WRITE : CL_MEM_READ_ONLY;
-    range.buffer = cl::Buffer(context, access | CL_MEM_USE_HOST_PTR, static_cast<std::size_t>(range.end - range.begin),
-                              const_cast<std::byte*>(range.begin));
+    host_buffers_.emplace_back(context, access | CL_MEM_USE_HOST_PTR, static_cast<std::size_t>(range.end - range.begin),
+                               const_cast<std::byte*>(range.begin));
   }
 
   for (int i = 0; i < image_count; ++i) {
@@ -180,7 +180,7 @@ BoundImages::BoundImages(const cl::Context& context, const Frame& frame,
       const HostRange own = host_extent(image);
       const auto range = std::find_if(host_ranges_.begin(), host_ranges_.end(),
                                       [&](const HostRange& r) { return own.begin >= r.begin && own.end <= r.end; });
-      buffers_[i] = range->buffer;
+      buffers_[i] = host_buffers_[range - host_ranges_.begin()];
       offset += static_cast<const std::byte*>(image.host) - range->begin;
     }
     layouts_[i] = {offset,
@@ -200,11 +200,11 @@ const cl::Buffer& BoundImages::buffer(ImageName name) const {
 params::ImageParams BoundImages::layout(ImageName name) const { return layouts_[static_cast<int>(name)]; }
 
 void BoundImages::read_back(const cl::CommandQueue& queue) const {
-  for (const HostRange& range : host_ranges_) {
-    if (!range.written) continue;
-    const auto size = static_cast<std::size_t>(range.end - range.begin);
-    void* mapped = queue.enqueueMapBuffer(range.buffer, CL_TRUE, CL_MAP_READ, 0, size);
-    queue.enqueueUnmapMemObject(range.buffer, mapped);
+  for (std::size_t i = 0; i < host_ranges_.size(); ++i) {
+    if (!host_ranges_[i].written) continue;
+    const auto size = static_cast<std::size_t>(host_ranges_[i].end - host_ranges_[i].begin);
+    void* mapped = queue.enqueueMapBuffer(host_buffers_[i], CL_TRUE, CL_MAP_READ, 0, size);
+    queue.enqueueUnmapMemObject(host_buffers_[i], mapped);
   }
   queue.finish();
 }

@@ -50,10 +50,10 @@ class BoundImages {
     const std::byte* begin;
     const std::byte* end;
     bool written;
-    cl::Buffer buffer;
   };
 
   std::vector<HostRange> host_ranges_;
+  std::vector<cl::Buffer> host_buffers_;  ///< one per range
   std::array<cl::Buffer, image_count> buffers_;
   std::array<params::ImageParams, image_count> layouts_{};
 };

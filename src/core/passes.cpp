@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace dermis {
 
@@ -75,11 +76,11 @@ std::size_t WorkingSize::bytes(int width, int height, bool has_pixel_width) cons
          tiles * (1 + COUNTERS * sizeof(int));
 }
 
-Passes::Passes(const Plan::State& plan, const Frame& frame, const BoundImages& images, const cl::CommandQueue& queue,
+Passes::Passes(const Plan::State& plan, const Frame& frame, const BoundImages& images, cl::CommandQueue queue,
                std::span<const cl_event> wait_for)
     : plan_(plan),
       images_(images),
-      queue_(queue),
+      queue_(std::move(queue)),
       size_(frame.width, frame.height, plan.options),
       params_(frame_params(frame, plan.options, size_)) {
   for (const cl_event event : wait_for) last_.emplace_back(event, true);

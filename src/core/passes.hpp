@@ -34,7 +34,7 @@ struct StageEvents {
 /// start after the one before it; none blocks. The working images live until the queue is done with them.
 class Passes {
  public:
-  Passes(const Plan::State& plan, const Frame& frame, const BoundImages& images, const cl::CommandQueue& queue,
+  Passes(const Plan::State& plan, const Frame& frame, const BoundImages& images, cl::CommandQueue queue,
          std::span<const cl_event> wait_for);
 
   void prepare_and_classify();

@@ -37,8 +37,8 @@ struct BesselK0 {
  private:
   static const std::vector<double>& cosines() {
     static const std::vector<double> values = [] {
-      std::vector<double> c;
-      for (int i = 0; i < 400; ++i) c.push_back(std::cosh(0.2 * i));
+      std::vector<double> c(400);
+      for (std::size_t i = 0; i < c.size(); ++i) c[i] = std::cosh(0.2 * static_cast<double>(i));
       return c;
     }();
     return values;
@@ -112,7 +112,7 @@ Profile Profile::burley_cycles(const Rgb& radius_mm) {
   return profile;
 }
 
-Profile Profile::gaussians(std::vector<GaussianTerm> terms) {
+Profile Profile::gaussians(const std::vector<GaussianTerm>& terms) {
   Rgb total{};
   for (const GaussianTerm& term : terms) {
     require_lengths({term.variance_mm2, term.variance_mm2, term.variance_mm2}, "variance_mm2");

@@ -42,7 +42,7 @@ RadialTable tabulate(const std::function<double(int, double)>& f, double r_min_m
 double value_at(const RadialTable& table, int channel, double r_squared) {
   if (r_squared <= node(table, 0)) return table.values.front()[channel];
   if (r_squared >= node(table, table.values.size() - 1)) return table.values.back()[channel];
-  int exponent;
+  int exponent = 0;
   const double mantissa = 2 * std::frexp(r_squared, &exponent) - 1;  // 0..1 within the octave
   const double position = std::ldexp(exponent - 1 - table.first_exponent + mantissa, table.log2_nodes_per_octave);
   const auto index = static_cast<std::size_t>(position);
