@@ -1,6 +1,7 @@
 /// The header of an OpenEXR file, looked at before the OpenEXR library allocates what a damaged file asks for.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -17,6 +18,8 @@ struct HeaderAttribute {
 
 inline constexpr int max_side_px = 65536;
 inline constexpr int max_channels = 1024;
+inline constexpr int max_coordinate = 1 << 29;  // sums of two stay within int
+inline constexpr std::size_t max_name = 255;    // of an attribute, a type or a channel
 
 /// The attributes of a flat file of one part that is within the limits. Throws Error(input_missing) if it cannot be
 /// opened, Error(input_unsupported) otherwise.

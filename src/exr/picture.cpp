@@ -5,112 +5,27 @@
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
-#include <exception>
 #include <utility>
 
 #include "dermis/error.hpp"
 #include "dermis/exr.hpp"
 #include "exr/header.hpp"
 #include "exr/picture_state.hpp"
-#include "exr/quiet.hpp"
 #include "exr/text.hpp"
 
 namespace dermis::exr {
 namespace {
 
-constexpr int largest_coordinate = 1 << 29;
-constexpr std::size_t longest_name = 255;                          // of an OpenEXR attribute or channel
-constexpr std::size_t batch_bytes = std::size_t{64} << 20;         // read at once
-constexpr int smallest_batch_rows = 32, largest_batch_rows = 256;  // the rows of one block of PIZ, and of DWAB
-
-Format format_of(OIIO::TypeDesc type) {
-  switch (type.basetype) {
-    case OIIO::TypeDesc::HALF:
-      return Format::f16;
-    case OIIO::TypeDesc::UINT:
-      return Format::u32;
-    default:
-      return Format::f32;
-  }
-}
-
-std::vector<ChannelName> channels_of(const OIIO::ImageSpec& spec) {
-  std::vector<ChannelName> channels;
-  for (int c = 0; c < spec.nchannels; ++c) {
-    channels.push_back({spec.channelnames[static_cast<std::size_t>(c)], format_of(spec.channelformat(c))});
-  }
-  return channels;
-}
-
-bool has_attribute(const std::vector<HeaderAttribute>& header, std::string_view name) {
-  return std::any_of(header.begin(), header.end(),
-                     [name](const HeaderAttribute& attribute) { return attribute.name == name; });
-}
-
-/// What is left of a file's description for the next file: no channels, no tiles, no attributes that the reader made
-/// up.
-OIIO::ImageSpec windows_and_attributes(OIIO::ImageSpec spec, const std::vector<HeaderAttribute>& header) {
-  spec.nchannels = 0;
-  spec.channelnames.clear();
-  spec.channelformats.clear();
-  spec.alpha_channel = spec.z_channel = -1;
-  if (spec.tile_width > 0 && !has_attribute(header, "envmap")) {
-    spec.erase_attribute("textureformat");  // would make a mip map of it
-  }
-  spec.tile_width = spec.tile_height = spec.tile_depth = 0;
-  for (const char* name : {"compression", "openexr:lineOrder", "openexr:levelmode", "openexr:roundingmode"}) {
-    spec.erase_attribute(name);
-  }
-  if (!has_attribute(header, "ResolutionUnit")) {
-    spec.erase_attribute("ResolutionUnit");
-  }
-  return spec;
-}
-
-int rows_at_once(const OIIO::ImageSpec& spec, const PixelBlock& pixels) {
-  if (spec.tile_width > 0) {
-    return spec.tile_height;
-  }
-  const std::size_t rows = batch_bytes / pixels.packed_row_bytes() / smallest_batch_rows * smallest_batch_rows;
-  return std::clamp(static_cast<int>(std::min<std::size_t>(rows, largest_batch_rows)), smallest_batch_rows,
-                    largest_batch_rows);
-}
-
-/// Memory is touched row by row as the rows arrive, so that a small file that promises much fails before it takes much.
-bool read_pixels(OIIO::ImageInput& input, const OIIO::ImageSpec& spec, PixelBlock& pixels) {
-  const int step = std::min(rows_at_once(spec, pixels), spec.height);
-  const auto packed =
-      std::make_unique_for_overwrite<std::byte[]>(pixels.packed_row_bytes() * static_cast<std::size_t>(step));
-  for (int row = 0; row < spec.height; row += step) {
-    const int rows = std::min(step, spec.height - row);
-    const int y = spec.y + row;
-    const bool ok = spec.tile_width > 0 ? input.read_tiles(0, 0, spec.x, spec.x + spec.width, y, y + rows, 0, 1, 0,
-                                                           spec.nchannels, OIIO::TypeUnknown, packed.get())
-                                        : input.read_scanlines(0, 0, y, y + rows, 0, 0, spec.nchannels,
-                                                               OIIO::TypeUnknown, packed.get());
-    if (!ok) {
-      return false;
-    }
-    pixels.unpack(packed.get(), row, rows);
-  }
-  return true;
-}
-
-[[noreturn]] void unreadable(const std::filesystem::path& path, std::string_view why) {
-  throw Error(ErrorCode::input_unsupported, escaped(path.string()), escaped(why), "a complete OpenEXR file");
-}
-
 void check_window(const char* name, const Window& window) {
   const bool sides_ok =
       std::min(window.width, window.height) >= 1 && std::max(window.width, window.height) <= max_side_px;
-  const bool corner_ok =
-      std::max(std::abs(std::int64_t{window.x}), std::abs(std::int64_t{window.y})) <= largest_coordinate;
+  const bool corner_ok = std::max(std::abs(std::int64_t{window.x}), std::abs(std::int64_t{window.y})) <= max_coordinate;
   if (!sides_ok || !corner_ok) {
     throw Error(ErrorCode::usage, name,
                 std::to_string(window.width) + " x " + std::to_string(window.height) + " at (" +
                     std::to_string(window.x) + ", " + std::to_string(window.y) + ")",
-                "1 to " + std::to_string(max_side_px) + " pixels on a side, at most " +
-                    std::to_string(largest_coordinate) + " from the origin");
+                "1 to " + std::to_string(max_side_px) + " pixels on a side, at most " + std::to_string(max_coordinate) +
+                    " from the origin");
   }
 }
 
@@ -194,34 +109,6 @@ Picture::~Picture() = default;
 Picture::Picture(Picture&&) noexcept = default;
 Picture& Picture::operator=(Picture&&) noexcept = default;
 
-Picture Picture::read(const std::filesystem::path& path) {
-  const std::vector<HeaderAttribute> header = read_header(path);
-  const Quiet quiet;
-  try {
-    const auto input = OIIO::ImageInput::create("openexr");
-    OIIO::ImageSpec spec;
-    if (!input) {
-      unreadable(path, OIIO::geterror());
-    }
-    if (!input->open(path.string(), spec)) {
-      unreadable(path, input->geterror());
-    }
-    Picture picture({spec.x, spec.y, spec.width, spec.height},
-                    {spec.full_x, spec.full_y, spec.full_width, spec.full_height});
-    picture.state_->pixels = PixelBlock(spec.width, spec.height, channels_of(spec));
-    if (!read_pixels(*input, spec, picture.state_->pixels)) {
-      unreadable(path, input->geterror());
-    }
-    picture.state_->compression = spec.get_string_attribute("compression", "zip");
-    picture.state_->spec = windows_and_attributes(std::move(spec), header);
-    return picture;
-  } catch (const Error&) {
-    throw;
-  } catch (const std::exception& error) {
-    unreadable(path, error.what());
-  }
-}
-
 int Picture::width() const { return state_->spec.width; }
 
 int Picture::height() const { return state_->spec.height; }
@@ -270,7 +157,7 @@ void Picture::add_channels(std::span<const std::string> names, Format format) {
   }
   std::vector<ChannelName> more;
   for (const std::string& name : names) {
-    if (name.empty() || name.size() > longest_name || name.find('\0') != std::string::npos) {
+    if (name.empty() || name.size() > max_name || name.find('\0') != std::string::npos) {
       throw Error(ErrorCode::usage, "name of a channel", '"' + escaped(name) + '"', "1 to 255 characters");
     }
     const bool listed =
@@ -297,7 +184,7 @@ OutputImage Picture::view_to_write(std::span<const std::string> names) {
 }
 
 void Picture::set_attribute(std::string_view name, std::string_view value) {
-  if (name.empty() || name.size() > longest_name || name.find('\0') != std::string_view::npos) {
+  if (name.empty() || name.size() > max_name || name.find('\0') != std::string_view::npos) {
     throw Error(ErrorCode::usage, "name of an attribute", '"' + escaped(name) + '"', "1 to 255 characters");
   }
   state_->spec.attribute({name.data(), name.size()}, OIIO::string_view(value.data(), value.size()));

@@ -174,6 +174,22 @@ TEST_CASE("every attribute comes back as it was, and none is added") {
   REQUIRE(failure_of([&] { picture.set_attribute("", "x"); }).code == ErrorCode::usage);
 }
 
+TEST_CASE("a real Cycles file comes back with another compression and nothing else changed") {
+  const TemporaryFolder folder;
+  const std::filesystem::path path = std::filesystem::path(DERMIS_DATA) / "monkey_gbuffer.exr";
+  const Picture picture = Picture::read(path);
+  REQUIRE(picture.compression() == "dwaa");
+  picture.write(folder / "out.exr");
+  REQUIRE(stored_channels(folder / "out.exr") == stored_channels(path));
+  auto before = attributes_of(path);
+  auto after = attributes_of(folder / "out.exr");
+  REQUIRE(before.size() == after.size());
+  const auto is_compression = [](const auto& attribute) { return attribute.name == "compression"; };
+  REQUIRE(std::erase_if(before, is_compression) == 1);
+  REQUIRE(std::erase_if(after, is_compression) == 1);
+  REQUIRE(before == after);
+}
+
 TEST_CASE("the same picture gives the same file") {
   const TemporaryFolder folder;
   write_bytes(folder / "in.exr", raw_exr::bytes(small_file()));

@@ -3,7 +3,6 @@
 
 #include <OpenImageIO/imageio.h>
 
-#include <cstring>
 #include <filesystem>
 #include <map>
 #include <string>
@@ -26,13 +25,19 @@ inline std::map<std::string, StoredChannel> stored_channels(const std::filesyste
   const auto input = OIIO::ImageInput::open(path.string());
   REQUIRE(input);
   const OIIO::ImageSpec spec = input->spec();
+  std::string pixels(spec.image_bytes(true), '\0');
+  REQUIRE(input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeUnknown, pixels.data()));
   std::map<std::string, StoredChannel> out;
+  const std::size_t pixel_bytes = spec.pixel_bytes(true);
+  std::size_t offset = 0;
   for (int c = 0; c < spec.nchannels; ++c) {
-    StoredChannel channel{spec.channelformat(c), {}};
-    channel.values.resize(static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.height) *
-                          channel.type.size());
-    REQUIRE(input->read_image(0, 0, c, c + 1, OIIO::TypeUnknown, channel.values.data()));
-    out[spec.channelnames[static_cast<std::size_t>(c)]] = std::move(channel);
+    StoredChannel& channel = out[spec.channelnames[static_cast<std::size_t>(c)]];
+    channel.type = spec.channelformat(c);
+    const std::size_t bytes = channel.type.size();
+    for (std::size_t at = offset; at < pixels.size(); at += pixel_bytes) {
+      channel.values.append(pixels, at, bytes);
+    }
+    offset += bytes;
   }
   return out;
 }

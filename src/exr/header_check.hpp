@@ -1,0 +1,28 @@
+/// What a header must be like before a reader may trust it.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string_view>
+#include <vector>
+
+#include "exr/header.hpp"
+
+namespace dermis::exr {
+
+/// Throws Error(input_unsupported).
+[[noreturn]] void refuse(const std::filesystem::path& path, std::string_view seen, std::string_view wanted);
+[[noreturn]] void damaged(const std::filesystem::path& path, std::string_view what);
+
+/// The first four bytes as a number.
+std::uint32_t little_endian(std::string_view bytes);
+
+/// False if the type of the attribute has a size and its value another.
+bool has_right_size(const HeaderAttribute& attribute);
+
+/// Throws Error(input_unsupported) unless a file with these attributes and so many bytes is flat, within the limits,
+/// and can be complete.
+void check_header(const std::filesystem::path& path, const std::vector<HeaderAttribute>& attributes,
+                  std::uint64_t file_bytes);
+
+}  // namespace dermis::exr
