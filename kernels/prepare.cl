@@ -71,7 +71,7 @@ kernel void prepare(struct FrameParams f, global const struct MaterialParams* ma
         if (!(mask > 0.0f) || !isfinite(mask)) m = 0;
         k *= m > 0 ? fmin(mask, 1.0f) : 1.0f;
 #endif
-        const int is_bad = m > 0 && !(all_finite(input) && all_finite(albedo));
+        const int is_bad = m > 0 && !(all_finite(input) && all_finite(albedo) && all_finite(value));
         bad[(size_t)y * f.width + x] = (uchar)is_bad;
         if (is_bad) m = 0;
         if (m > 0) {

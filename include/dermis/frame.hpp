@@ -43,7 +43,7 @@ struct Image {
   explicit operator bool() const { return host != nullptr || buffer != nullptr; }
 };
 
-/// An image to write; owns nothing. It may be the same memory as an image to read.
+/// An image to write; owns nothing. It may be the same memory as an image to read, if the layout is the same.
 struct OutputImage {
   void* host = nullptr;
   cl_mem buffer = nullptr;
@@ -73,7 +73,7 @@ struct Camera {
 };
 
 /// One G-buffer. All images have the frame's size. A pixel whose depth is not finite, not above 0 (perspective) or
-/// 1e9 and more is background, and so is one whose light is not finite: it neither gives nor takes light.
+/// 1e9 and more is background, and so is one whose light or albedo is not finite: it neither gives nor takes light.
 struct Frame {
   int width = 0;
   int height = 0;

@@ -33,7 +33,7 @@ enum class Method {
 /// What Frame::light holds.
 enum class Lighting {
   raw,  ///< irradiance: the albedo is not in it
-  lit,  ///< irradiance times albedo
+  lit,  ///< irradiance times albedo; where an albedo is below 1e-4 the irradiance counts as 0
 };
 
 struct Options {

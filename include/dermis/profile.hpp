@@ -14,7 +14,7 @@ using Rgb = std::array<double, 3>;
 
 /// One two-dimensional Gaussian of a sum: weight * exp(-r^2 / (2 v)) / (2 pi v).
 struct GaussianTerm {
-  double variance_mm2;  ///< v > 0, mm^2
+  double variance_mm2;  ///< v, mm^2, 1e-18..1e18
   Rgb weight;           ///< >= 0; a channel's weights are scaled to sum to 1
 };
 
@@ -23,13 +23,13 @@ struct GaussianTerm {
 class Profile {
  public:
   /// Burley's normalized diffusion, R(r) = (e^(-r/d) + e^(-r/3d)) / (8 pi d r)
-  /// (Golubev 2018, with s = 1/d). `d_mm` > 0 and finite, one per channel.
+  /// (Golubev 2018, with s = 1/d). `d_mm` in 1e-9..1e9, one per channel.
   /// Throws Error(usage) otherwise.
   static Profile burley(const Rgb& d_mm);
 
   /// Burley's profile from the radius that Cycles calls "Subsurface Radius" and a constant albedo:
   /// mean free path l = radius / (4 pi), d = l / s(A), s(A) = 1.9 - A + 3.5 (A - 0.8)^2
-  /// (Christensen and Burley 2015, eq. 6). `radius_mm` > 0; `albedo` in [0, 1].
+  /// (Christensen and Burley 2015, eq. 6). `radius_mm` in 1e-9..1e9; `albedo` in [0, 1].
   static Profile burley_cycles(const Rgb& radius_mm, const Rgb& albedo);
 
   /// The same with the albedo of each pixel: the frame has to carry an albedo image.

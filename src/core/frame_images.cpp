@@ -41,6 +41,11 @@ FrameImage describe(const char* name, int channels, const AnyImage& image, int w
           image.host, image.buffer, with_strides(image.layout, channels, width)};
 }
 
+bool layout_exceeds(const Layout& layout, std::ptrdiff_t farthest) {
+  return layout.row_stride >= farthest || layout.row_stride <= -farthest ||
+         layout.offset >= static_cast<std::size_t>(farthest);
+}
+
 void check_image(const FrameImage& image, int width, int height) {
   if (!image.present()) return;
   const std::string argument = image.name;
@@ -69,6 +74,10 @@ void check_image(const FrameImage& image, int width, int height) {
                 std::to_string(std::max(channel_stride, pixel_stride)) + " bytes",
                 "channel and pixel strides below 2 GiB");
   }
+  constexpr std::ptrdiff_t farthest = std::ptrdiff_t{1} << 44;  // times the largest side it fits a ptrdiff_t
+  if (layout_exceeds(image.layout, farthest)) {
+    throw Error(ErrorCode::usage, argument + " layout", "a row stride or offset of 16 TiB or more", "less");
+  }
   if (image.buffer != nullptr) {
     const Extent extent = extent_of(image, width, height);
     const auto size = with_device_errors([&] { return cl::Buffer(image.buffer, true).getInfo<CL_MEM_SIZE>(); });
@@ -80,8 +89,9 @@ void check_image(const FrameImage& image, int width, int height) {
 }
 
 void check_positive(double value, const char* argument) {
-  if (!(value > 0 && std::isfinite(value))) {
-    throw Error(ErrorCode::usage, argument, std::to_string(value), "a finite number above 0");
+  // Kernels hold it, and its reciprocal, as float32.
+  if (!(value >= 1e-18 && value <= 1e18)) {
+    throw Error(ErrorCode::usage, argument, std::to_string(value), "1e-18..1e18");
   }
 }
 

@@ -87,6 +87,10 @@ Passes::Passes(const Plan::State& plan, const Frame& frame, const BoundImages& i
   const cl::Context context(plan.device.context(), true);
   const auto allocate = [&](std::size_t bytes) { return cl::Buffer(context, CL_MEM_READ_WRITE, bytes); };
   const std::size_t plane_bytes = size_.plane * sizeof(float);
+  if (3 * plane_bytes > plan.device.info().max_buffer_bytes) {
+    throw Error(ErrorCode::device, "frame size", std::to_string(3 * plane_bytes) + " bytes for one working image",
+                "at most " + std::to_string(plan.device.info().max_buffer_bytes) + " on this device");
+  }
   const std::size_t tiles = static_cast<std::size_t>(size_.tiles_x) * size_.tiles_y;
   light_ = allocate(3 * plane_bytes);
   depth_ = allocate(plane_bytes);

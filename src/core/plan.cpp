@@ -21,13 +21,14 @@ void check_share(double value, const char* argument) {
 }
 
 void check_options(const Options& options) {
+  constexpr int largest_tile_px = 1 << 16;
   check_share(options.jitter, "jitter");
   check_share(options.albedo_mix, "albedo_mix");
-  if (options.tile_width < SPAN || options.tile_width % SPAN != 0) {
-    throw Error(ErrorCode::usage, "tile_width", std::to_string(options.tile_width), "a positive multiple of 16");
+  if (options.tile_width < SPAN || options.tile_width % SPAN != 0 || options.tile_width > largest_tile_px) {
+    throw Error(ErrorCode::usage, "tile_width", std::to_string(options.tile_width), "a multiple of 16 up to 65536");
   }
-  if (options.tile_height < 1) {
-    throw Error(ErrorCode::usage, "tile_height", std::to_string(options.tile_height), "1 or more");
+  if (options.tile_height < 1 || options.tile_height > largest_tile_px) {
+    throw Error(ErrorCode::usage, "tile_height", std::to_string(options.tile_height), "1..65536");
   }
 }
 
@@ -59,7 +60,7 @@ std::string build_options(const Plan::State& state, int materials, int log2_node
     return std::string(" -D") + name + "=" + std::to_string(value);
   };
   const FrameDescription& frames = state.description;
-  return "-cl-std=CL1.2" + define("V", state.device.info().vector_width) +
+  return "-cl-std=CL1.2" + define("V", state.item_is_tile ? state.device.info().vector_width : 1) +
          define("ITEM_IS_TILE", state.item_is_tile ? 1 : 0) + define("MATERIALS", materials) +
          define("HAS_DEPTH", frames.depth ? 1 : 0) + define("HAS_MATERIAL", frames.material ? 1 : 0) +
          define("HAS_MASK", frames.mask ? 1 : 0) + define("HAS_ALBEDO", frames.albedo ? 1 : 0) +
@@ -78,6 +79,11 @@ double milliseconds(const cl::Event& event) {
   const auto end = event.getProfilingInfo<CL_PROFILING_COMMAND_END>();
   return static_cast<double>(end - start) * 1e-6;
 }
+
+struct FinishedAtEnd {
+  const cl::CommandQueue& queue;
+  ~FinishedAtEnd() { clFinish(queue()); }
+};
 
 Stats make_stats(const Passes& passes) {
   Stats stats;
@@ -164,6 +170,8 @@ Stats Plan::run(const Frame& frame, const Progress& progress) const {
     const cl::Context context(state_->device.context(), true);
     const cl::CommandQueue queue(context, cl::Device(state_->device.id(), true), CL_QUEUE_PROFILING_ENABLE);
     const BoundImages bound(context, frame, images);
+    // Whatever ends the run, the device must be done with the caller's memory first.
+    const FinishedAtEnd finished_at_end{queue};
     Passes passes(*state_, frame, bound, queue, {});
     passes.prepare_and_classify();
     const int steps = passes.scatter_steps();

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <sstream>
 #include <string>
 #include <utility>
 
@@ -61,7 +62,7 @@ template <class Function>
 double solve_decreasing(const Function& f, double target, double start) {
   double low = 0;
   double high = start;
-  while (f(high) > target) high *= 2;
+  while (f(high) > target && std::isfinite(high)) high *= 2;
   for (int i = 0; i < 200 && high - low > 1e-15 * high; ++i) {
     const double middle = (low + high) / 2;
     (f(middle) > target ? low : high) = middle;
@@ -73,10 +74,20 @@ void require_share(double share) {
   if (!(share >= 0 && share < 1)) throw Error(ErrorCode::usage, "share", std::to_string(share), "0 <= share < 1");
 }
 
+// What float32 squares of it, and of its reciprocal, can hold with room to spare.
+constexpr double shortest_mm = 1e-9;
+constexpr double longest_mm = 1e9;
+
+std::string number_text(double value) {
+  std::ostringstream text;
+  text << value;
+  return text.str();
+}
+
 void require_lengths(const Rgb& values, const char* argument) {
   for (const double value : values) {
-    if (!(value > 0 && std::isfinite(value))) {
-      throw Error(ErrorCode::usage, argument, std::to_string(value), "a positive length in mm per channel");
+    if (!(value >= shortest_mm && value <= longest_mm)) {
+      throw Error(ErrorCode::usage, argument, number_text(value), "1e-9..1e9 mm per channel");
     }
   }
 }
@@ -115,7 +126,9 @@ Profile Profile::burley_cycles(const Rgb& radius_mm) {
 Profile Profile::gaussians(const std::vector<GaussianTerm>& terms) {
   Rgb total{};
   for (const GaussianTerm& term : terms) {
-    require_lengths({term.variance_mm2, term.variance_mm2, term.variance_mm2}, "variance_mm2");
+    if (!(term.variance_mm2 >= shortest_mm * shortest_mm && term.variance_mm2 <= longest_mm * longest_mm)) {
+      throw Error(ErrorCode::usage, "variance_mm2", number_text(term.variance_mm2), "1e-18..1e18 mm^2");
+    }
     for (int c = 0; c < 3; ++c) {
       if (!(term.weight[c] >= 0 && std::isfinite(term.weight[c]))) {
         throw Error(ErrorCode::usage, "weight", std::to_string(term.weight[c]), "0 or more per channel");
@@ -125,7 +138,10 @@ Profile Profile::gaussians(const std::vector<GaussianTerm>& terms) {
   }
   Profile profile;
   for (int c = 0; c < 3; ++c) {
-    if (!(total[c] > 0)) throw Error(ErrorCode::usage, "weight", "a sum of 0", "a positive sum in every channel");
+    if (!(total[c] > 0 && std::isfinite(total[c]))) {
+      throw Error(ErrorCode::usage, "weight", "a sum of " + number_text(total[c]),
+                  "a positive, finite sum in every channel");
+    }
     for (const GaussianTerm& term : terms) {
       if (term.weight[c] > 0) profile.gaussians_[c].push_back({term.weight[c] / total[c], term.variance_mm2});
     }

@@ -101,12 +101,15 @@ TEST_CASE("Burley's radius by a Cycles radius", "[profile]") {
 }
 
 TEST_CASE("bad profiles are refused by name and value", "[profile]") {
-  CHECK_THROWS_WITH(Profile::burley({1, -2, 3}), "d_mm: got -2.000000, want a positive length in mm per channel");
+  CHECK_THROWS_WITH(Profile::burley({1, -2, 3}), "d_mm: got -2, want 1e-9..1e9 mm per channel");
   CHECK_THROWS_AS(Profile::burley({1, NAN, 3}), dermis::Error);
   CHECK_THROWS_AS(Profile::burley({1, INFINITY, 3}), dermis::Error);
   CHECK_THROWS_AS(Profile::gaussians({}), dermis::Error);
   CHECK_THROWS_AS(Profile::gaussians({{1.0, {1, 0, 1}}}), dermis::Error);
   CHECK_THROWS_AS(Profile::gaussians({{0.0, {1, 1, 1}}}), dermis::Error);
+  CHECK_THROWS_AS(Profile::gaussians({{1.0, {1e308, 1, 1}}, {2.0, {1e308, 1, 1}}}), dermis::Error);
+  CHECK_THROWS_AS(Profile::burley({1, 1e-310, 3}), dermis::Error);
+  CHECK_THROWS_AS(Profile::burley({1, 1e300, 3}), dermis::Error);
   CHECK_THROWS_AS(Profile::burley_cycles({1, 1, 1}, {0.5, 1.5, 0.5}), dermis::Error);
   CHECK_THROWS_AS(Profile::burley({1, 1, 1}).radius(0, 1.0), dermis::Error);
   CHECK_THROWS_WITH(dermis::preset("skni"), Catch::Contains("skni") && Catch::Contains("marble, milk"));
