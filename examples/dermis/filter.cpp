@@ -3,9 +3,11 @@
 
 #include <array>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "commands.hpp"
@@ -28,7 +30,25 @@ namespace {
 
 using exr::Role;
 
+/// No output may take the place of another one, and only the result that of the input.
+void check_outputs_differ(const FilterArguments& arguments) {
+  std::vector<std::pair<std::string, std::filesystem::path>> taken = {{"the input", arguments.picture.path},
+                                                                      {"--output", arguments.output}};
+  const auto check = [&](const std::string& argument, const std::string& path) {
+    if (path.empty() || path == "-") return;
+    for (const auto& [other, other_path] : taken) {
+      if (std::filesystem::weakly_canonical(path) == std::filesystem::weakly_canonical(other_path)) {
+        throw Error(ErrorCode::usage, argument, path, "a file that is not " + other + " as well");
+      }
+    }
+    taken.emplace_back(argument, path);
+  };
+  check("--preview", arguments.preview);
+  check("--stats-json", arguments.stats_json);
+}
+
 void check_outputs(const FilterArguments& arguments) {
+  check_outputs_differ(arguments);
   check_writable("--output", arguments.output);
   if (!arguments.preview.empty()) check_writable("--preview", arguments.preview);
   if (!arguments.stats_json.empty() && arguments.stats_json != "-")
@@ -129,6 +149,11 @@ Input read_input(const FilterArguments& arguments, const std::vector<NamedProfil
 Frame frame_of(Input& input, const StatsReport& report, double mm_per_unit) {
   const std::vector<std::string> beauty = beauty_channels(report.roles);
   const std::array<std::string, 3> scattered = scattered_channels(report.roles);
+  if (!beauty.empty() && input.picture.find(scattered.front()) != nullptr) {
+    fmt::print(stderr,
+               "dermis: warning: {} is there already; if the beauty holds scattered light, it is scattered again\n",
+               scattered.front());
+  }
   input.picture.add_channels(scattered, Format::f32);
   Frame frame = input.loaded.frame();
   frame.camera = report.camera.camera;

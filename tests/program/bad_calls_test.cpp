@@ -105,6 +105,17 @@ TEST_CASE("the scale has no default and must be a finite number above 0") {
     call.check_refuses({"--mm-per-unit", value}, 2, {"--mm-per-unit: got " + value, "> 0"}, "--mm-per-unit");
 }
 
+TEST_CASE("no output takes the place of another one or of the input") {
+  const GoodCall call;
+  const std::string before = read_file(call.input());
+  call.check_refuses({"--stats-json", call.input()}, 2, {"--stats-json: got", "not the input as well"});
+  call.check_refuses({"--stats-json", call.output()}, 2, {"--stats-json: got", "not --output as well"});
+  const std::string picture = call.folder() / "p.png";
+  call.check_refuses({"--preview", picture, "--stats-json", call.folder() / "./p.png"}, 2, {"not --preview as well"});
+  CHECK(read_file(call.input()) == before);
+  CHECK_FALSE(fs::exists(picture));
+}
+
 TEST_CASE("options that contradict each other are usage errors") {
   const GoodCall call;
   call.check_refuses({"--profile", "skin"}, 2, {"--material", "--profile"});
