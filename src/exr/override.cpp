@@ -45,7 +45,8 @@ Override::Override(std::string_view text) : text_(text) {
     malformed(text, "role=channels");
   }
   const std::string name = lower(trimmed(text.substr(0, equals)));
-  const auto it = std::find_if(all_roles.begin(), all_roles.end(), [&name](Role r) { return name_of(r) == name; });
+  const auto* const it =
+      std::find_if(all_roles.begin(), all_roles.end(), [&name](Role r) { return name_of(r) == name; });
   if (it == all_roles.end()) {
     malformed(text, "one of " + list_of_roles() + " before the =");
   }

@@ -70,7 +70,7 @@ class Pass {
  private:
   using Values = std::array<Bounded, 3>;
 
-  Bounded span_footprint(int x, int y) const;
+  Bounded span_footprint(int start, int y) const;
   Values at(int x, int y, Bounded span_footprint);
   Values unchanged(int x, int y) const;
   Values scattered(int x, int y, const Rung& rung, int rotated);

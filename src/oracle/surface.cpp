@@ -75,7 +75,7 @@ Bounded widest(const std::array<Bounded, 3>& width_factor, const Taps& taps) {
 void decide_touched(SurfacePixel& pixel, const Taps& taps) {
   const Bounded radius_px =
       larger(pixel.effective_footprint[horizontal], pixel.effective_footprint[vertical]) * as_float(taps.radius_mm);
-  const double narrow = static_cast<double>(Taps::min_radius_px);
+  const auto narrow = static_cast<double>(Taps::min_radius_px);
   pixel.touched = radius_px.value >= narrow;
   pixel.touched_unsure = radius_px.low() < narrow && radius_px.high() >= narrow;
 }
