@@ -10,8 +10,8 @@ inline std::vector<dermis::oracle::Material> oracle_materials(const std::vector<
   std::vector<dermis::oracle::Material> result;
   for (const auto& [id, profile] : materials) {
     result.push_back({id, profile.width_follows_albedo(), dermis::Taps::importance_sampled(profile, taps),
-                      [profile](int c, double r) { return profile.radial(c, r); },
-                      [profile](int c, double r) { return profile.cdf(c, r); }});
+                      [profile = profile](int c, double r) { return profile.radial(c, r); },
+                      [profile = profile](int c, double r) { return profile.cdf(c, r); }});
   }
   return result;
 }
