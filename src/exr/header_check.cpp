@@ -110,7 +110,7 @@ class HeaderCheck {
     std::set<std::string_view> names;
     while (!list.empty() && list[0] != '\0') {
       const std::size_t end = list.find('\0');
-      if (end == std::string_view::npos || end > max_name || list.size() < end + 17) {
+      if (end > max_name || list.size() < end + 17) {
         damaged(path_, "channels");
       }
       const std::string_view name = list.substr(0, end);
@@ -194,8 +194,8 @@ bool has_right_size(const HeaderAttribute& attribute) {
     const std::uint64_t pixels = std::uint64_t{little_endian(value)} * little_endian(value.substr(4));
     return pixels <= value.size() && 4 * pixels == value.size() - 8;
   }
-  const auto it = std::find_if(fixed_sizes.begin(), fixed_sizes.end(),
-                               [&attribute](const TypeSize& size) { return size.type == attribute.type; });
+  const auto* const it = std::find_if(fixed_sizes.begin(), fixed_sizes.end(),
+                                      [&attribute](const TypeSize& size) { return size.type == attribute.type; });
   return it == fixed_sizes.end() || it->bytes == attribute.value.size();
 }
 

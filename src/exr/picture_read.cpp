@@ -33,6 +33,7 @@ Format format_of(OIIO::TypeDesc type) {
 
 std::vector<ChannelName> channels_of(const OIIO::ImageSpec& spec) {
   std::vector<ChannelName> channels;
+  channels.reserve(static_cast<std::size_t>(spec.nchannels));
   for (int c = 0; c < spec.nchannels; ++c) {
     channels.push_back({spec.channelnames[static_cast<std::size_t>(c)], format_of(spec.channelformat(c))});
   }
