@@ -18,11 +18,31 @@ Profile measured(const Rgb& reduced_scattering_per_mm, const Rgb& absorption_per
   return Profile::burley_cycles(radius_mm, albedo);
 }
 
+constexpr const char* dipole_source = "Jensen et al. 2001, Table 1: the dipole of sigma_s' and sigma_a, eta 1.3";
+constexpr const char* artist_source = "Jimenez et al. 2015, Table 2, lengths read as mm";
+
 std::vector<Preset> make_presets() {
   return {
       {"apple", jensen, measured({2.29, 2.39, 1.97}, {.0030, .0034, .046}, {.85, .84, .53})},
+      {"artist-close-fit", artist_source, Profile::artist({.034, .029, .016}, {1, .48, .2}, .37)},
+      {"artist-production", artist_source, Profile::artist({.25, .08, .02}, {1, .3, .05}, .6)},
       {"chicken", jensen, measured({.15, .21, .38}, {.015, .077, .19}, {.31, .15, .10})},
       {"cream", jensen, measured({7.38, 5.47, 3.15}, {.0002, .0028, .0163}, {.98, .90, .73})},
+      {"dipole-apple", dipole_source, Profile::dipole({2.29, 2.39, 1.97}, {.0030, .0034, .046})},
+      {"dipole-chicken1", dipole_source, Profile::dipole({.15, .21, .38}, {.015, .077, .19})},
+      {"dipole-chicken2", dipole_source, Profile::dipole({.19, .25, .32}, {.018, .088, .20})},
+      {"dipole-cream", dipole_source, Profile::dipole({7.38, 5.47, 3.15}, {.0002, .0028, .0163})},
+      {"dipole-ketchup", dipole_source, Profile::dipole({.18, .07, .03}, {.061, .97, 1.45})},
+      {"dipole-marble", "Jensen et al. 2001, Table 1: the dipole of sigma_s' and sigma_a, eta 1.5",
+       Profile::dipole({2.19, 2.62, 3.00}, {.0021, .0041, .0071}, 1.5)},
+      {"dipole-potato", dipole_source, Profile::dipole({.68, .70, .55}, {.0024, .0090, .12})},
+      {"dipole-skim-milk", dipole_source, Profile::dipole({.70, 1.22, 1.90}, {.0014, .0025, .0142})},
+      {"dipole-skin1", dipole_source, Profile::dipole({.74, .88, 1.01}, {.032, .17, .48})},
+      {"dipole-skin2", dipole_source, Profile::dipole({1.09, 1.59, 1.79}, {.013, .070, .145})},
+      {"dipole-spectralon",
+       "Jensen et al. 2001, Table 1: the dipole of sigma_s', eta 1.3; sigma_a is printed as 0.00, taken as 0.001",
+       Profile::dipole({11.6, 20.4, 14.9}, {.001, .001, .001})},
+      {"dipole-whole-milk", dipole_source, Profile::dipole({2.55, 3.21, 3.77}, {.0011, .0024, .014})},
       {"jade",
        "mental ray subsurface shader manual, table of optical properties; albedo by the dipole's diffuse reflectance",
        measured({.657, .786, .900}, {.00053, .00123, .00213}, {.88, .84, .80})},
