@@ -145,7 +145,7 @@ Measurement measure(const Device& device, const Subject& subject, const std::vec
   }
   for (Running& one : running) {
     add_times(one.row, one, result.copy_ms);
-    one.row.loads = 2.0 * one.row.what.options.taps;
+    one.row.loads = (1.0 + one.row.what.options.taps.rank) * one.row.what.options.taps.count;
     const oracle::Picture picture = picture_of(subject, one.scattered);
     for (const oracle::Picture& mask : masks) {
       const oracle::Difference difference = oracle::compare(picture, truth, mask);

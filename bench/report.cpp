@@ -34,7 +34,7 @@ nlohmann::ordered_json json_row(const Row& row, const Subject& subject) {
   return {{"name", row.what.name},
           {"method", row.what.options.method == Method::exact ? "exact" : "separable"},
           {"rank", 1},
-          {"taps", row.what.options.taps},
+          {"taps", row.what.options.taps.count},
           {"jitter", row.what.options.jitter},
           {"size", {subject.width, subject.height}},
           {"ms", row.ms},
@@ -102,7 +102,8 @@ void plot(const std::filesystem::path& path, const Measurement& measurement, con
     for (const bool labels : {false, true}) {
       for (const Row& row : measurement.rows) {
         if (row.what.options.jitter > 0) continue;
-        fmt::print(gnuplot, "{} {} {}\n", row.ms, row.rel_l2[i], labels ? std::to_string(row.what.options.taps) : "");
+        fmt::print(gnuplot, "{} {} {}\n", row.ms, row.rel_l2[i],
+                   labels ? std::to_string(row.what.options.taps.count) : "");
       }
       fmt::print(gnuplot, "e\n");
     }

@@ -114,13 +114,14 @@ inline int2 reach(const struct FrameParams* f, const Points* p, vint mask, vfloa
 
 // The integral for the lanes of one material.
 inline vrgb integrate(const struct FrameParams* f, const Points* p, vint mine, int m,
-                      global const struct MaterialParams* its, global const float4* tables, vrgb reciprocal,
-                      vfloat widest, global const float* light, global const float* depth, global const uchar* material,
-                      global const float* geometry, int x, int y) {
+                      global const struct MaterialParams* its, global const struct TermParams* term,
+                      global const float4* tables, vrgb reciprocal, vfloat widest, global const float* light,
+                      global const float* depth, global const uchar* material, global const float* geometry, int x,
+                      int y) {
   const size_t plane = plane_size(f);
   const size_t at_p = pixel_at(f, x, y);
   const vrgb own_light = load_rgb(light, plane, at_p);
-  const vrgb own = own_share(f, p, tables, its->core, reciprocal, load_floats(geometry + at_p),
+  const vrgb own = own_share(f, p, tables, term->core, reciprocal, load_floats(geometry + at_p),
                              load_floats(geometry + plane + at_p), load_floats(geometry + 2 * plane + at_p));
   Sum sum = {{own.r * own_light.r, own.g * own_light.g, own.b * own_light.b}, own};
   const int2 extent = reach(f, p, mine, its->reach_mm * widest);
@@ -135,7 +136,7 @@ inline vrgb integrate(const struct FrameParams* f, const Points* p, vint mine, i
       if (!any(same)) continue;
       const int distance = max(abs(dx), abs(dy));
       const int n = distance <= NEAR_4 ? 4 : distance <= NEAR_2 ? 2 : 1;
-      const vrgb average = patch_average(f, p, tables, its->falloff, reciprocal, dx, dy, load_floats(depth + at),
+      const vrgb average = patch_average(f, p, tables, term->falloff, reciprocal, dx, dy, load_floats(depth + at),
                                          load_floats(geometry + at), load_floats(geometry + plane + at), n);
       const vfloat area = load_floats(geometry + 2 * plane + at);
       const vrgb density = {average.r * reciprocal.r * reciprocal.r, average.g * reciprocal.g * reciprocal.g,
@@ -155,9 +156,9 @@ inline vrgb integrate(const struct FrameParams* f, const Points* p, vint mine, i
 }
 
 kernel void exact(struct FrameParams f, int first_row, global const struct MaterialParams* materials,
-                  global const float4* tables, global const float* light, global const float* depth,
-                  global const uchar* material, global const float* width, global const float* geometry,
-                  global const uchar* tile_class, global float* out) {
+                  global const struct TermParams* terms, global const float4* tables, global const float* light,
+                  global const float* depth, global const uchar* material, global const float* width,
+                  global const float* geometry, global const uchar* tile_class, global float* out) {
   const Item item = this_item(&f, first_row);
   if (tile_class[item.tile] != TILE_SCATTERS) return;
   const size_t plane = plane_size(&f);
@@ -173,8 +174,8 @@ kernel void exact(struct FrameParams f, int first_row, global const struct Mater
         const vint mine = AS_MASK(m == (vint)(i + 1));
         if (!any(mine)) continue;
         result = select_rgb(result,
-                            integrate(&f, &p, mine, i + 1, materials + i, tables, reciprocal, widest, light, depth,
-                                      material, geometry, x, y),
+                            integrate(&f, &p, mine, i + 1, materials + i, terms + materials[i].first_term, tables,
+                                      reciprocal, widest, light, depth, material, geometry, x, y),
                             mine);
       }
       store_rgb(out, plane, at, result);

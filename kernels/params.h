@@ -79,7 +79,7 @@ struct TableParams {
   int last_bits;   // bits of the last node less first_bits
 };
 
-// One material.
+// One material. The exact integral has one term.
 struct MaterialParams {
   float radius_mm;  // of the separable passes
   float reach_mm;   // of the exact integral
@@ -88,23 +88,32 @@ struct MaterialParams {
   int id;
   int first_rung;
   int rungs;
-  struct TableParams falloff;  // a(r) for separable passes, R(r) for the exact integral
-  struct TableParams core;     // light within |x| < r, or within the disc of radius r
+  int first_term;
 };
 
-// One tap set.
+// One term: scale f(x) f(y).
+struct TermParams {
+  float scale[3];
+  float sum[3];
+  int normalised;
+  struct TableParams falloff;  // f(r) for separable passes, R(r) for the exact integral
+  struct TableParams core;     // integral of f over |x| < r, or of R over the disc of radius r
+};
+
+// One tap set. Its weights are those of the centre, then of each pair; of every term each time.
 struct RungParams {
   float footprint;
   float core_half_width_px;
-  int first_pair;
+  int first_offset;
   int pairs;
   int rotated_pairs;  // the first ones
+  int first_weight;
 };
 
-// Two taps, at +offset_px and -offset_px.
-struct PairParams {
+// What a pair of taps is worth in one term; of a centre, length_mm is the gain of the core.
+struct WeightParams {
   float length_mm[3];
-  int offset_px;
+  float share[3];  // of its weight in the first term
 };
 
 // One rotation of the axes, times 4096: the offset (o, 0) of the horizontal pass becomes (o * cosine, o * sine_x), the

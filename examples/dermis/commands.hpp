@@ -16,6 +16,7 @@ Command add_filter(CLI::App& parent);
 Command add_info(CLI::App& parent);
 Command add_devices(CLI::App& parent);
 Command add_profiles(CLI::App& parent);
+Command add_taps(CLI::App& parent);
 Command add_compare(CLI::App& parent);
 Command add_preview(CLI::App& parent);
 Command add_scene(CLI::App& parent);

@@ -10,11 +10,13 @@
 #include <utility>
 #include <vector>
 
+#include "chosen_designs.hpp"
 #include "commands.hpp"
 #include "dermis/error.hpp"
 #include "dermis/exr.hpp"
 #include "dermis/plan.hpp"
 #include "dermis/version.hpp"
+#include "design_arguments.hpp"
 #include "filter_arguments.hpp"
 #include "loaded_frame.hpp"
 #include "output_file.hpp"
@@ -34,10 +36,13 @@ using exr::Role;
 void check_outputs_differ(const FilterArguments& arguments) {
   std::vector<std::pair<std::string, std::filesystem::path>> taken = {{"the input", arguments.picture.path},
                                                                       {"--output", arguments.output}};
+  const auto place = [](const std::filesystem::path& path) {
+    return std::filesystem::weakly_canonical(std::filesystem::absolute(path));
+  };
   const auto check = [&](const std::string& argument, const std::string& path) {
     if (path.empty() || path == "-") return;
     for (const auto& [other, other_path] : taken) {
-      if (std::filesystem::weakly_canonical(path) == std::filesystem::weakly_canonical(other_path)) {
+      if (place(path) == place(other_path)) {
         throw Error(ErrorCode::usage, argument, path, "a file that is not " + other + " as well");
       }
     }
@@ -70,21 +75,54 @@ std::array<std::string, 3> scattered_channels(const exr::Roles& roles) {
   return {prefix + "R", prefix + "G", prefix + "B"};
 }
 
-std::vector<MaterialReport> report_materials(const std::vector<NamedProfile>& profiles, const LoadedFrame& loaded) {
-  const MaterialCounts counts = count_materials(loaded.material, {});
+/// None if the pixels are nowhere, or of a size that taps cannot be made for.
+std::optional<double> pixel_mm_of(const SurfacePixels& pixels, const Camera& camera, double mm_per_unit) {
+  if (!pixels.median_depth_units) return std::nullopt;
+  const double pixel_mm = finest_pixel_mm(camera, *pixels.median_depth_units, mm_per_unit);
+  return pixel_mm >= 1e-12 && pixel_mm <= 1e12 ? std::optional(pixel_mm) : std::nullopt;
+}
+
+std::vector<MaterialReport> report_materials(const std::vector<NamedProfile>& profiles, const LoadedFrame& loaded,
+                                             const Camera& camera, double mm_per_unit) {
+  const MaterialCounts counts = count_materials(loaded.material, loaded.depth);
   std::vector<MaterialReport> reports;
   for (const NamedProfile& named : profiles) {
-    MaterialReport report{named.id, without_folders(named.text), kernel_radius_mm(named.profile), 0};
+    SurfacePixels pixels;
     if (!named.id) {
-      report.pixels = count_surface(loaded.depth, loaded.mask).pixels;
+      pixels = count_surface(loaded.depth, loaded.mask);
     } else if (const auto found = counts.by_id.find(*named.id); found != counts.by_id.end()) {
-      report.pixels = found->second.pixels;
+      pixels = found->second;
     } else {
       fmt::print(stderr, "dermis: warning: --material {}: no pixel has this id\n", *named.id);
     }
-    reports.push_back(report);
+    reports.push_back({.id = named.id,
+                       .profile = without_folders(named.text),
+                       .radius_mm = kernel_radius_mm(named.profile),
+                       .pixels = pixels.pixels,
+                       .pixel_mm = pixel_mm_of(pixels, camera, mm_per_unit),
+                       .design = {},
+                       .predicted_rel_l2 = {}});
   }
   return reports;
+}
+
+/// The designs that the tolerance asks for, or else the exact method.
+void follow_tolerance(double tolerance, std::vector<NamedProfile>& profiles, StatsReport& report) {
+  report.tolerance = tolerance;
+  const std::vector<std::string> without = choose_designs(profiles, report.materials, tolerance);
+  if (without.empty()) return;
+  report.options.method = Method::exact;
+  fmt::print(stderr, "dermis: note: --tolerance {}: no taps are that good for {}; the method is exact\n", tolerance,
+             fmt::join(without, ", "));
+}
+
+Plan make_plan(const Device& device, const std::vector<NamedProfile>& profiles, const Frame& frame,
+               const Options& options) {
+  try {
+    return {device, materials_of(profiles), FrameDescription::of(frame), options};
+  } catch (const Error& error) {
+    throw named_as_option(error);
+  }
 }
 
 /// The progress bar goes before anything else is printed.
@@ -119,7 +157,9 @@ void write_pictures(const FilterArguments& arguments, exr::Picture& picture, con
   if (preview) preview->commit();
 }
 
-void print_stats(const FilterArguments& arguments, const StatsReport& report) {
+void print_stats(const FilterArguments& arguments, const std::vector<NamedProfile>& profiles, StatsReport& report) {
+  if (!arguments.stats && arguments.stats_json.empty()) return;
+  if (report.options.method == Method::separable) report_designs(profiles, report.options.taps, report.materials);
   if (arguments.stats) fmt::print("{}", text_of(report));
   if (arguments.stats_json == "-")
     fmt::print("{}", json_text_of(report));
@@ -141,7 +181,7 @@ Input read_input(const FilterArguments& arguments, const std::vector<NamedProfil
   if (!arguments.preview.empty()) exr::require(picture, report.roles, Role::beauty);
   report.camera = exr::find_camera(picture, report.roles, arguments.picture.camera);
   input.loaded = load_frame(picture, report.roles, profiles);
-  report.materials = report_materials(profiles, input.loaded);
+  report.materials = report_materials(profiles, input.loaded, report.camera.camera, *arguments.picture.mm_per_unit);
   return input;
 }
 
@@ -171,7 +211,7 @@ int run_filter(const FilterArguments& arguments) {
   Stopwatch step;
   StatsReport report;
   report.options = options_of(arguments);
-  const std::vector<NamedProfile> profiles = parse_profiles(arguments.materials);
+  std::vector<NamedProfile> profiles = parse_profiles(arguments.materials);
   check_outputs(arguments);
 
   Input input = read_input(arguments, profiles, report);
@@ -179,7 +219,8 @@ int run_filter(const FilterArguments& arguments) {
   report.times.read_ms = step.lap_ms();
 
   const Device device = Device::open(arguments.device, arguments.threads);
-  const Plan plan(device, materials_of(profiles), FrameDescription::of(frame), report.options);
+  if (arguments.tolerance) follow_tolerance(*arguments.tolerance, profiles, report);
+  const Plan plan = make_plan(device, profiles, frame, report.options);
   report.device = device.info();
   report.times.plan_ms = step.lap_ms();
 
@@ -190,7 +231,7 @@ int run_filter(const FilterArguments& arguments) {
   write_pictures(arguments, input.picture, report.roles);
   report.times.write_ms = step.lap_ms();
   report.times.total_ms = whole.lap_ms();
-  print_stats(arguments, report);
+  print_stats(arguments, profiles, report);
   return 0;
 }
 

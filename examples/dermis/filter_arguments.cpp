@@ -18,13 +18,16 @@ void add_method_arguments(CLI::App& app, FilterArguments& arguments) {
   app.add_option("--method", arguments.method, "separable, or exact: the slow integral over the surface")
       ->check(one_of({"separable", "exact"}))
       ->capture_default_str();
-  app.add_option("--rank", arguments.rank, "separable products that make up the profile; 1 is all there is today")
-      ->check(whole_number([](std::int64_t rank) { return rank == 1; }, "1, the only rank there is today"))
-      ->capture_default_str();
-  app.add_option("--taps", options.taps, "taps per pass")
-      ->check(whole_number([](std::int64_t taps) { return taps >= 3 && taps <= 127 && taps % 2 == 1; },
-                           "an odd number from 3 to 127"))
-      ->capture_default_str();
+  add_design_arguments(app, arguments.design);
+  auto* tolerance = app.add_option(
+      "--tolerance", arguments.tolerance,
+      "instead of a design: for each material the cheapest taps whose predicted error, relative L2 on natural images, "
+      "is at most that at the material's median depth; the exact method for all if there are none");
+  tolerance
+      ->check(real_number([](double share) { return share > 0 && share < 1; },
+                          "a share of the light between 0 and 1, as 0.01"))
+      ->type_name("REL");
+  for (const char* const option : design_options) tolerance->excludes(app.get_option(option));
   app.add_option("--jitter", options.jitter, "share of the kernel radius within which taps are rotated per pixel")
       ->check(number_0_to_1())
       ->capture_default_str();
@@ -86,7 +89,11 @@ Options options_of(const FilterArguments& arguments) {
                 "ID=PROFILE for the materials that scatter, or --profile PROFILE for every pixel");
   if (arguments.stats && arguments.stats_json == "-")
     throw Error(ErrorCode::usage, "--stats-json", "- together with --stats", "only one of them on standard output");
+  if (arguments.tolerance && arguments.method == "exact")
+    throw Error(ErrorCode::usage, "--tolerance", fmt::format("{} with --method exact", *arguments.tolerance),
+                "--method separable with it");
   Options options = arguments.options;
+  options.taps = design_of(arguments.design);
   options.method = arguments.method == "exact" ? Method::exact : Method::separable;
   options.lighting = arguments.lighting == "lit" ? Lighting::lit : Lighting::raw;
   return options;
@@ -104,8 +111,10 @@ std::string command_text(const FilterArguments& arguments) {
   if (picture.mm_per_unit) add("--mm-per-unit", *picture.mm_per_unit);
   add("--method", arguments.method);
   if (arguments.method == "separable") {
-    add("--rank", arguments.rank);
-    add("--taps", arguments.options.taps);
+    if (arguments.tolerance)
+      add("--tolerance", *arguments.tolerance);
+    else
+      text += command_text(design_of(arguments.design));
     add("--jitter", arguments.options.jitter);
     add("--seed", arguments.options.seed);
   }

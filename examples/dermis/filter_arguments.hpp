@@ -2,9 +2,11 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <optional>
 #include <string>
 
 #include "dermis/plan.hpp"
+#include "design_arguments.hpp"
 #include "material_arguments.hpp"
 #include "picture_arguments.hpp"
 
@@ -21,9 +23,10 @@ struct FilterArguments {
   std::string device;
   int threads = 0;
   std::string method = "separable";
-  int rank = 1;
+  DesignArguments design{.defaults = Options{}.taps};
+  std::optional<double> tolerance;  ///< in place of the design
   std::string lighting = "raw";
-  Options options;  ///< but for the method and the lighting
+  Options options;  ///< but for the method, the taps and the lighting
 };
 
 void add_filter_arguments(CLI::App& app, FilterArguments& arguments);

@@ -60,13 +60,6 @@ struct Info {
   std::optional<Memory> memory;
 };
 
-/// Pixels per mm in x and y.
-std::array<double, 2> footprint(const Camera& camera, double depth_units, double mm_per_unit) {
-  const bool perspective = camera.projection == Camera::Projection::perspective;
-  const double mm = perspective ? depth_units * mm_per_unit : mm_per_unit;
-  return {camera.scale_x / mm, camera.scale_y / mm};
-}
-
 void find_camera(Info& info, const exr::CameraHint& hint) {
   try {
     info.camera = exr::find_camera(info.picture, info.roles, hint);

@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "dermis/error.hpp"
-#include "dermis/taps.hpp"
 #include "number_argument.hpp"
 #include "profile_argument.hpp"
 
@@ -52,7 +51,7 @@ std::vector<NamedProfile> parse_profiles(const MaterialArguments& arguments) {
 
 std::vector<Material> materials_of(const std::vector<NamedProfile>& profiles) {
   std::vector<Material> materials;
-  for (const NamedProfile& named : profiles) materials.push_back({named.id.value_or(0), named.profile});
+  for (const NamedProfile& named : profiles) materials.push_back({named.id.value_or(0), named.profile, named.taps});
   return materials;
 }
 
@@ -65,6 +64,6 @@ bool any_follows_albedo(const std::vector<NamedProfile>& profiles) {
                      [](const NamedProfile& named) { return named.profile.width_follows_albedo(); });
 }
 
-double kernel_radius_mm(const Profile& profile) { return Taps::importance_sampled(profile, Options{}.taps).radius_mm; }
+double kernel_radius_mm(const Profile& profile) { return profile.half_width(profile.widest_channel(), 0.999); }
 
 }  // namespace dermis::program

@@ -20,6 +20,7 @@ struct NamedProfile {
   std::optional<int> id;
   std::string text;
   Profile profile;
+  std::optional<TapsDesign> taps = {};  ///< in place of those for all
 };
 
 void add_material_arguments(CLI::App& app, MaterialArguments& arguments);
@@ -36,7 +37,8 @@ bool have_ids(const std::vector<NamedProfile>& profiles);
 /// True if the width of any of them follows the albedo of the pixel.
 bool any_follows_albedo(const std::vector<NamedProfile>& profiles);
 
-/// The radius beyond which the separable passes do not look, mm. If the width follows the albedo: the most it can be.
+/// Half the width, mm, of the strip that holds 99.9 % of the light of the widest channel: beyond it the passes of rank
+/// 1 do not look; those of higher ranks look a little further. If the width follows the albedo: the most it can be.
 double kernel_radius_mm(const Profile& profile);
 
 }  // namespace dermis::program

@@ -16,10 +16,20 @@ inline constexpr std::string_view profile_grammar =
     "  burley:RR/RG/RB,cycles     Cycles' subsurface radius in mm, with the albedo of each pixel\n"
     "  burley:RR/RG/RB,cycles,albedo=AR/AG/AB\n"
     "                             the same with a constant albedo\n"
-    "  gaussians:FILE.json        {\"terms\": [{\"variance_mm2\": v, \"weight\": [r, g, b]}, ...]}";
+    "  burley:LR/LG/LB,mfp,albedo=AR/AG/AB\n"
+    "                             mean free path in mm and albedo\n"
+    "  gaussians:FILE.json        {\"terms\": [{\"variance_mm2\": v, \"weight\": [r, g, b]}, ...]}\n"
+    "  artist:NR/NG/NB,FR/FG/FB,w=W\n"
+    "                             a near and a far Gaussian, standard deviations in mm, W of the light in the near "
+    "one\n"
+    "  dipole:SR/SG/SB,AR/AG/AB[,eta=E]\n"
+    "                             a medium: reduced scattering and absorption in 1/mm, refractive index (1.3)\n"
+    "  better-dipole:SR/SG/SB,AR/AG/AB[,eta=E]\n"
+    "                             the same by d'Eon's better dipole\n"
+    "  table:FILE.csv             rows of r_mm,R,G,B; a header line and # comments may stand in it";
 
 /// The profile that `text` describes; `argument` is named in errors. Throws Error(usage) if the text is malformed, and
-/// Error(input_missing) or Error(input_unsupported) for the file of gaussians.
+/// Error(input_missing) or Error(input_unsupported) for the file of Gaussians or of a table.
 Profile parse_profile(std::string_view argument, std::string_view text);
 
 /// The same text without the folders of the file in it.

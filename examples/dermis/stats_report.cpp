@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "dermis/version.hpp"
+#include "design_arguments.hpp"
 #include "json_text.hpp"
 #include "role_text.hpp"
 
@@ -26,11 +27,27 @@ json json_of(const DeviceInfo& device) {
           {"max_buffer_bytes", device.max_buffer_bytes}};
 }
 
+json or_null(const std::optional<double>& value) { return value ? json(*value) : json(nullptr); }
+
+json design_of(const MaterialReport& material) {
+  if (!material.design) return nullptr;
+  const TapsDesign& design = *material.design;
+  return {{"model", program::name_of(design.model)},
+          {"rank", design.rank},
+          {"taps", design.count},
+          {"placement", program::name_of(design.placement)},
+          {"guide", design.model == Model::guided ? json(design.guide) : json(nullptr)},
+          {"non_negative", design.non_negative},
+          {"predicted_rel_l2", or_null(material.predicted_rel_l2)}};
+}
+
 json json_of(const MaterialReport& material) {
   return {{"id", material.id ? json(*material.id) : json(nullptr)},
           {"profile", material.profile},
           {"radius_mm", material.radius_mm},
-          {"pixels", material.pixels}};
+          {"pixels", material.pixels},
+          {"pixel_mm", or_null(material.pixel_mm)},
+          {"design", design_of(material)}};
 }
 
 json times_of(const StatsReport& report) {
@@ -39,6 +56,24 @@ json times_of(const StatsReport& report) {
           {"scatter", report.stats.scatter_ms}, {"finish", report.stats.finish_ms},
           {"run", report.times.run_ms},         {"write", report.times.write_ms},
           {"total", report.times.total_ms}};
+}
+
+std::string text_of(const MaterialReport& material) {
+  std::string text =
+      fmt::format("material {:<2} {}, {} pixels, radius {:.3g} mm\n", material.id ? std::to_string(*material.id) : "",
+                  material.profile, material.pixels, material.radius_mm);
+  if (material.design) {
+    const TapsDesign& design = *material.design;
+    text += fmt::format("            {} rank {}, {} taps, placement {}", program::name_of(design.model), design.rank,
+                        design.count, program::name_of(design.placement));
+    if (design.model == Model::guided) text += fmt::format(", guide {}", design.guide);
+    if (design.non_negative) text += ", not negative";
+    text += '\n';
+  }
+  if (material.predicted_rel_l2)
+    text += fmt::format("            predicted error {:.3g} % for pixels of {:.3g} mm\n",
+                        100 * *material.predicted_rel_l2, *material.pixel_mm);
+  return text;
 }
 
 double percent(std::int64_t part, std::int64_t whole) {
@@ -75,13 +110,11 @@ std::string text_of(const StatsReport& report) {
                                  report.device.compute_units);
   text += fmt::format("camera      {}\n", text_of(report.camera));
   text += fmt::format("method      {}", name_of(options.method));
-  if (options.method == Method::separable)
-    text += fmt::format(", {} taps, jitter {}, seed {}", options.taps, options.jitter, options.seed);
-  for (const MaterialReport& material : report.materials)
-    text +=
-        fmt::format("\nmaterial {:<2} {}, {} pixels, radius {:.3g} mm", material.id ? std::to_string(*material.id) : "",
-                    material.profile, material.pixels, material.radius_mm);
-  text += fmt::format("\ntiles       {}\n", stats.tiles);
+  if (options.method == Method::separable) text += fmt::format(", jitter {}, seed {}", options.jitter, options.seed);
+  if (report.tolerance) text += fmt::format(", tolerance {}", *report.tolerance);
+  text += '\n';
+  for (const MaterialReport& material : report.materials) text += text_of(material);
+  text += fmt::format("tiles       {}\n", stats.tiles);
   text += counted("computed", stats.tiles_computed, stats.tiles);
   text += counted("without material", stats.tiles_without_material, stats.tiles);
   text += counted("narrow", stats.tiles_narrow, stats.tiles);
@@ -95,11 +128,16 @@ std::string text_of(const StatsReport& report) {
 
 std::string json_text_of(const StatsReport& report) {
   const Stats& stats = report.stats;
-  json object = {
-      {"version", DERMIS_VERSION},    {"device", json_of(report.device)}, {"method", name_of(report.options.method)},
-      {"taps", report.options.taps},  {"jitter", report.options.jitter},  {"seed", report.options.seed},
-      {"times_ms", times_of(report)}, {"camera", json_of(report.camera)}, {"roles", json_of(report.roles)},
-      {"materials", json::array()}};
+  json object = {{"version", DERMIS_VERSION},
+                 {"device", json_of(report.device)},
+                 {"method", name_of(report.options.method)},
+                 {"tolerance", or_null(report.tolerance)},
+                 {"jitter", report.options.jitter},
+                 {"seed", report.options.seed},
+                 {"times_ms", times_of(report)},
+                 {"camera", json_of(report.camera)},
+                 {"roles", json_of(report.roles)},
+                 {"materials", json::array()}};
   object["tiles"] = {{"total", stats.tiles},
                      {"computed", stats.tiles_computed},
                      {"without_material", stats.tiles_without_material},

@@ -16,6 +16,10 @@ struct MaterialReport {
   std::string profile;
   double radius_mm = 0;
   std::int64_t pixels = 0;
+  /// Size at the median depth, along the axis that has the smaller ones; none if no pixel is of the material.
+  std::optional<double> pixel_mm;
+  std::optional<TapsDesign> design;        ///< none if the method is exact
+  std::optional<double> predicted_rel_l2;  ///< of the design for pixels of that size, TapSet::predicted_rel_l2
 };
 
 /// Wall clock of the steps around the device's own, milliseconds.
@@ -30,6 +34,7 @@ struct StepTimes {
 struct StatsReport {
   DeviceInfo device;
   Options options;
+  std::optional<double> tolerance;  ///< if the designs were chosen by it
   Stats stats;
   StepTimes times;
   exr::FoundCamera camera;

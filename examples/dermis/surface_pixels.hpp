@@ -1,10 +1,13 @@
 /// How many pixels the materials of a picture have, and how far away they are.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <optional>
 #include <span>
+
+#include "dermis/frame.hpp"
 
 namespace dermis::program {
 
@@ -23,5 +26,11 @@ MaterialCounts count_materials(std::span<const float> ids, std::span<const float
 
 /// The pixels that are not background; where there is a mask, those where it is above 0.
 SurfacePixels count_surface(std::span<const float> depth, std::span<const float> mask);
+
+/// Pixels per mm of a surface parallel to the screen, along x and along y.
+std::array<double, 2> footprint(const Camera& camera, double depth_units, double mm_per_unit);
+
+/// The size of a pixel there, mm, along the axis that has the smaller ones.
+double finest_pixel_mm(const Camera& camera, double depth_units, double mm_per_unit);
 
 }  // namespace dermis::program

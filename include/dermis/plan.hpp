@@ -5,12 +5,14 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "dermis/device.hpp"
 #include "dermis/frame.hpp"
 #include "dermis/profile.hpp"
+#include "dermis/taps.hpp"
 
 struct _cl_command_queue;
 struct _cl_event;
@@ -23,10 +25,11 @@ namespace dermis {
 struct Material {
   int id = 0;  ///< 0..65535; ignored if the frame has no material ids
   Profile profile;
+  std::optional<TapsDesign> taps = {};  ///< in place of Options::taps
 };
 
 enum class Method {
-  separable,  ///< a horizontal, then a vertical pass of importance-sampled taps
+  separable,  ///< a horizontal, then a vertical pass of taps, for every term of the design
   exact,      ///< the surface integral over all visible pixels of the material; slow
 };
 
@@ -38,7 +41,7 @@ enum class Lighting {
 
 struct Options {
   Method method = Method::separable;
-  int taps = 25;           ///< per pass, centre included: odd, 3..127
+  TapsDesign taps = {.rank = 2};    ///< of every material that does not have its own
   double jitter = 0;       ///< share of the kernel radius within which taps are rotated per pixel, 0..1
   std::uint32_t seed = 0;  ///< of the rotation
   Lighting lighting = Lighting::raw;

@@ -1,12 +1,77 @@
-/// A profile made discrete: which pixels a separable pass reads, and what each is worth.
+/// A profile made discrete: which pixels the separable passes read, and what each is worth.
 #pragma once
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "dermis/profile.hpp"
 
 namespace dermis {
+
+/// How few one-dimensional functions stand for the profile: R(sqrt(x^2 + y^2)) ~ sum over terms of scale f(x) f(y).
+enum class Model {
+  pre_integrated,  ///< rank 1: the marginal a(x) (Jimenez et al. 2015, eq. 4-5); exact along axis-parallel edges
+  artist,          ///< rank 1: two Gaussians fitted to a(x) (eq. 6)
+  guided,          ///< rank 1: near or far scattering emphasised by `guide` (Appendix A)
+  svd,             ///< rank 1..6: truncated singular value decomposition, scaled to keep all light
+  gaussians,       ///< rank 1..6: so many Gaussians fitted to the profile (d'Eon and Luebke 2007)
+  optimised,       ///< rank 1: least error on natural images; rank 2, 3: a(x) and zero-sum corrections to it
+};
+
+/// Where the taps of a pass lie.
+enum class Placement {
+  uniform,     ///< at equal distances
+  importance,  ///< each stands for the same light of the widest channel (Jimenez et al. 2015, section 6)
+  quadratic,   ///< distances grow with the square of the number, as the 2012 shader has them
+  optimised,   ///< positions and weights together make the error on natural images least
+};
+
+/// How a pass reads between pixels.
+enum class Fetch {
+  integer,  ///< at whole pixels only
+  linear,   ///< anywhere, by linear interpolation of two neighbours
+};
+
+/// What taps to make of a profile.
+struct TapsDesign {
+  Model model = Model::optimised;
+  int rank = 1;    ///< terms: 1 for most models, 1..6 for svd and gaussians, 1..3 for optimised
+  int count = 17;  ///< taps per pass, centre included: odd, 3..2047
+  Placement placement = Placement::optimised;
+  bool non_negative = false;  ///< optimised, rank 2 and 3: hold the approximated profile above zero, for a little error
+  double guide = 2;           ///< guided: k in 0..4, sharper to smoother
+
+  bool operator==(const TapsDesign&) const = default;
+};
+
+/// One term of a TapSet.
+struct TapTerm {
+  Rgb scale{};                                ///< the term is scale w(x) w(y)
+  std::vector<std::array<float, 3>> weights;  ///< per offset and channel
+};
+
+/// Taps for pixels of one size on a surface parallel to the screen: channel c of the kernel is the sum over terms of
+/// scale_c times w_c (x) w_c.
+struct TapSet {
+  double pixel_mm = 0;  ///< size of a pixel on the surface
+  Fetch fetch = Fetch::integer;
+  std::vector<double> offsets_px;  ///< ascending and symmetric; whole unless the fetch is linear
+  /// The weights are multiples of 2^-24. Those of the first term sum to exactly 1 in every channel, in float32 in any
+  /// order (those of all terms if the model is gaussians); those of a correction to exactly 0.
+  std::vector<TapTerm> terms;
+  /// Expected relative L2 distance, all channels together, from the exact convolution with the profile, over images
+  /// with a 1/f amplitude spectrum.
+  double predicted_rel_l2 = 0;
+};
+
+/// Taps for one pixel size. Throws Error(usage) if the design is out of range, or `pixel_mm` not in 1e-12..1e12.
+TapSet make_tap_set(const Profile& profile, const TapsDesign& design, double pixel_mm, Fetch fetch = Fetch::integer);
+
+/// The design with the fewest reads per pixel, (1 + rank) count, whose taps at whole pixels have a predicted error of
+/// at most `tolerance` for pixels of that size; none if only the exact method can do. Throws Error(usage) if
+/// `tolerance` is not above 0 or `pixel_mm` not in 1e-12..1e12.
+std::optional<TapsDesign> cheapest_design(const Profile& profile, double tolerance, double pixel_mm);
 
 /// A function of distance, tabulated for three channels so that a kernel can evaluate it from the
 /// squared distance without a root or a logarithm: nodes sit at r^2 = 2^e (1 + m / M) for the integers
@@ -19,44 +84,59 @@ struct RadialTable {
   std::vector<std::array<float, 3>> values;
 };
 
-/// One symmetric pair of taps, at +offset_px and -offset_px from the pixel.
-struct TapPair {
-  int offset_px;                   ///< > 0
-  std::array<float, 3> length_mm;  ///< the tap's weight is length_mm * a(distance); per channel
+/// One term of the separable passes: scale f(x) f(y).
+struct Term {
+  std::array<float, 3> scale{1, 1, 1};
+  /// True: the weighted sum is divided by the sum of its weights. False: the term is a difference from the pixel
+  /// itself, sum x_0 + sum over taps of w_i (x_i - x_0), so that missing taps count as the pixel.
+  bool normalised = true;
+  std::array<float, 3> sum{1, 1, 1};  ///< of the weights, where nothing is missing; 1 if normalised
+  RadialTable falloff;                ///< f(r), 1/mm
+  RadialTable core;                   ///< integral of f over |x| < r; used if normalised
+};
+
+/// What one pair of taps is worth in one term.
+struct TapWeight {
+  std::array<float, 3> length_mm;  ///< times f(distance)
+  std::array<float, 3> share;      ///< times the pair's weight in the first term; 0 in the first term
 };
 
 /// The taps for kernels of about one size in pixels.
 struct Rung {
-  float footprint;             ///< pixels per mm that the taps were placed for
-  float core_half_width_px;    ///< the centre tap stands for |x| < this; its weight is core(that / footprint)
-  std::vector<TapPair> pairs;  ///< by ascending offset
+  float footprint;                              ///< pixels per mm that the taps were placed for
+  float core_half_width_px;                     ///< the centre tap stands for |x| < this
+  std::vector<std::array<float, 3>> core_gain;  ///< per term: times the core's light
+  std::vector<int> offsets_px;                  ///< one symmetric pair of taps each, at + and -; ascending, > 0
+  std::vector<TapWeight> weights;               ///< of all terms of the first pair, then of the second, ...
 };
 
 /// What the separable passes need to know of a profile: a ladder of tap sets over kernel size, so that
-/// every tap lies on a whole pixel whatever the footprint, and the profile's marginal a(x) and its integral as
-/// tables, so that a pass can weigh each tap by the true distance of the surface points.
+/// every tap lies on a whole pixel whatever the footprint, and each term's f and its integral as tables, so that a pass
+/// can weigh each tap by the true distance of the surface points.
 ///
 /// A pass over pixel p of width factor k per channel (1 unless an albedo or mask scales the profile) takes the rung of
-/// its span and computes
+/// its span and computes for each term t
 ///
-///     w_0 = core(core_half_width_px s_p / k)
-///     w_i = length_mm_i rung.footprint s_i falloff(|P_p - P_i| / k) / k
-///     result = sum w_i x_i / sum w_i
+///     w_0 = core_gain core(core_half_width_px s_p / k)
+///     w_i = length_mm_i rung.footprint s_i falloff(|P_p - P_i| / k) / k + share_i w_i(first term)
+///     result = sum w_i x_i / sum w_i                      if t is normalised
+///            = sum_t x_p + sum w_i (x_i - x_p)            if not
 ///
 /// where P are the surface points and s is the length of surface, mm, that a pixel spans along the pass: |dP/dx| or
 /// |dP/dy|, the change of depth in it being the smaller one of the differences to both neighbours of the same material,
-/// 0 if they differ in sign. The sums go over the taps that lie on the same material. The rung of a pass is that of the
-/// kernel radius radius_mm * max over the pixels of a span that scatter of F max_c(k_c relative_width_c), where F is
-/// the pixel's footprint and a span is 16 pixels of a row, starting at a multiple of 16; a pass whose rung is -1
-/// changes nothing. On a plane parallel to the screen w_i is the light that falls on the run of pixels the tap stands
-/// for, to first order in the step between rungs.
+/// 0 if they differ in sign. The sums go over the taps that lie on the same material. The horizontal pass makes one
+/// image per term from the light, the vertical pass the sum over terms of scale times its result on that image.
+///
+/// The rung of a pass is that of the kernel radius radius_mm * max over the pixels of a span that scatter of
+/// F max_c(k_c relative_width_c), where F is the pixel's footprint and a span is 16 pixels of a row, starting at a
+/// multiple of 16; in a pass whose rung is -1 each term is its sum at one point. On a plane parallel to the screen the
+/// weights are those of the rung's TapSet, to first order in the step between rungs.
 struct Taps {
-  /// The radius, mm, beyond which the passes do not look: 99.9 % of the widest channel's marginal.
+  /// The radius, mm, beyond which the passes do not look.
   double radius_mm = 0;
   /// The same radius of each channel's own marginal, divided by radius_mm: 1 for the widest channel.
   std::array<float, 3> relative_width{};
-  RadialTable falloff;      ///< a(r), 1/mm
-  RadialTable core;         ///< share of the light within |x| < r
+  std::vector<Term> terms;  ///< the first is normalised
   std::vector<Rung> rungs;  ///< see rung_index
 
   /// Kernel radii of the first and the last rung, px: narrower kernels are left alone, wider ones use the last rung.
@@ -67,12 +147,9 @@ struct Taps {
   /// The rung for a kernel radius in px, or -1 if the kernel is narrower than half a pixel.
   /// Rungs divide each octave in 16 equal steps.
   static int rung_index(float radius_px);
-
-  /// Importance-sampled taps from the pre-integrated profile (Jimenez et al. 2015, section 6): every tap
-  /// stands for a run of whole pixels; runs hold equal shares of the widest channel's light, except that none
-  /// is narrower than a pixel. `count` is the number of taps per pass, centre included: odd, 3..127.
-  /// Throws Error(usage) otherwise.
-  static Taps importance_sampled(const Profile& profile, int count);
 };
+
+/// The ladder of a design. Throws Error(usage) if the design is out of range.
+Taps make_taps(const Profile& profile, const TapsDesign& design);
 
 }  // namespace dermis

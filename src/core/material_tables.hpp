@@ -10,14 +10,17 @@
 
 namespace dermis {
 
-/// Flat arrays for upload. The tables of the separable method are a(r) and the light within |x| < r; those of the exact
-/// one R(r) and the light within the disc of radius r.
+/// Flat arrays for upload. The tables of the separable method are f(r) of each term and its integral over |x| < r;
+/// those of the exact one R(r) and the light within the disc of radius r.
 struct MaterialTables {
   std::vector<params::MaterialParams> materials;
+  std::vector<params::TermParams> terms;
   std::vector<params::RungParams> rungs;
-  std::vector<params::PairParams> pairs;
+  std::vector<int> offsets_px;
+  std::vector<params::WeightParams> weights;
   std::vector<std::array<float, 4>> nodes;
   int log2_nodes_per_octave = 0;
+  int terms_per_material = 0;  ///< those that a material does not have are there and weigh nothing
 };
 
 MaterialTables make_material_tables(const std::vector<Material>& materials, const Options& options);

@@ -67,9 +67,10 @@ WorkingSize::WorkingSize(int width, int height, const Options& options)
       tiles_x(round_up(width, options.tile_width) / options.tile_width),
       tiles_y(round_up(height, options.tile_height) / options.tile_height) {}
 
-std::size_t WorkingSize::bytes(int width, int height, bool has_pixel_width) const {
-  // light, between and scattered have three planes, depth one, segments two; width factors are three more.
-  const std::size_t planes = 3 + 3 + 3 + 1 + 2 + (has_pixel_width ? 3 : 0);
+std::size_t WorkingSize::bytes(int width, int height, int terms, bool has_pixel_width) const {
+  // light and scattered have three planes, between three per term, depth one, segments two; width factors are three
+  // more.
+  const std::size_t planes = 3 + 3 * static_cast<std::size_t>(terms) + 3 + 1 + 2 + (has_pixel_width ? 3 : 0);
   const std::size_t floats = planes * plane + static_cast<std::size_t>(spans) * height * 2;
   const std::size_t tiles = static_cast<std::size_t>(tiles_x) * tiles_y;
   return floats * sizeof(float) + plane + static_cast<std::size_t>(width) * height +
@@ -87,8 +88,9 @@ Passes::Passes(const Plan::State& plan, const Frame& frame, const BoundImages& i
   const cl::Context context(plan.device.context(), true);
   const auto allocate = [&](std::size_t bytes) { return cl::Buffer(context, CL_MEM_READ_WRITE, bytes); };
   const std::size_t plane_bytes = size_.plane * sizeof(float);
-  if (3 * plane_bytes > plan.device.info().max_buffer_bytes) {
-    throw Error(ErrorCode::device, "frame size", std::to_string(3 * plane_bytes) + " bytes for one working image",
+  const std::size_t largest_bytes = 3 * plane_bytes * plan.terms_per_material;
+  if (largest_bytes > plan.device.info().max_buffer_bytes) {
+    throw Error(ErrorCode::device, "frame size", std::to_string(largest_bytes) + " bytes for one working image",
                 "at most " + std::to_string(plan.device.info().max_buffer_bytes) + " on this device");
   }
   const std::size_t tiles = static_cast<std::size_t>(size_.tiles_x) * size_.tiles_y;
@@ -101,13 +103,13 @@ Passes::Passes(const Plan::State& plan, const Frame& frame, const BoundImages& i
   tile_class_ = allocate(tiles);
   counters_ = allocate(tiles * COUNTERS * sizeof(int));
   segment_ = allocate(2 * plane_bytes);
-  between_ = allocate(3 * plane_bytes);
+  between_ = allocate(largest_bytes);
   scattered_ = allocate(3 * plane_bytes);
   if (plan.options.jitter > 0) {
     auto table = rotations(frame.camera);
     rotations_ = cl::Buffer(context, CL_MEM_READ_ONLY | CL_MEM_COPY_HOST_PTR, sizeof(table), table.data());
   } else {
-    rotations_ = plan.pairs;
+    rotations_ = plan.offsets;
   }
 }
 
@@ -163,8 +165,9 @@ void Passes::launch_separable() {
   const int rows = plan_.item_is_tile ? size_.tiles_y : params_.height;
   const auto pass = [&](const char* name, const cl::Buffer& from, const cl::Buffer& to) {
     cl::Kernel kernel(plan_.program, name);
-    set_arguments(kernel, params_, 0, plan_.materials, plan_.rungs, plan_.pairs, plan_.nodes, rotations_,
-                  plan_.options.seed, from, depth_, segment_, material_, width_, footprint_, tile_class_, to);
+    set_arguments(kernel, params_, 0, plan_.materials, plan_.terms, plan_.rungs, plan_.offsets, plan_.weights,
+                  plan_.nodes, rotations_, plan_.options.seed, from, depth_, segment_, material_, width_, footprint_,
+                  tile_class_, to);
     events_.scatter.push_back(launch(kernel, columns, rows));
   };
   pass("scatter_x", light_, between_);
@@ -173,8 +176,8 @@ void Passes::launch_separable() {
 
 void Passes::launch_exact(int first_row, int rows) {
   cl::Kernel kernel(plan_.program, "exact");
-  set_arguments(kernel, params_, first_row, plan_.materials, plan_.nodes, light_, depth_, material_, width_, between_,
-                tile_class_, scattered_);
+  set_arguments(kernel, params_, first_row, plan_.materials, plan_.terms, plan_.nodes, light_, depth_, material_,
+                width_, between_, tile_class_, scattered_);
   events_.scatter.push_back(launch(kernel, plan_.item_is_tile ? size_.tiles_x : params_.width, rows));
 }
 

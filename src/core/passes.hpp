@@ -19,7 +19,7 @@ struct WorkingSize {
   WorkingSize(int width, int height, const Options& options);
 
   /// Bytes of all working images.
-  std::size_t bytes(int width, int height, bool has_pixel_width) const;
+  std::size_t bytes(int width, int height, int terms, bool has_pixel_width) const;
 };
 
 /// Events of the stages of a frame, in the order in which they run.
@@ -44,7 +44,6 @@ class Passes {
   void finish();
 
   const StageEvents& events() const { return events_; }
-  WorkingSize size() const { return size_; }
 
   /// Counters of each tile, params::COUNTERS apiece. Blocks.
   std::vector<int> tile_counters() const;
@@ -65,7 +64,7 @@ class Passes {
   cl::Buffer light_, depth_, material_, width_, bad_;  // written by prepare
   cl::Buffer footprint_, tile_class_, counters_;       // written by classify
   cl::Buffer segment_;                                 // surface length per pixel
-  cl::Buffer between_;    // written by the horizontal pass; the geometry, if the method is exact
+  cl::Buffer between_;    // written by the horizontal pass, an image per term; the geometry, if the method is exact
   cl::Buffer scattered_;  // written by the last pass
   cl::Buffer rotations_;
 };

@@ -62,9 +62,9 @@ std::string build_options(const Plan::State& state, int materials, int log2_node
   const FrameDescription& frames = state.description;
   return "-cl-std=CL1.2" + define("V", state.item_is_tile ? state.device.info().vector_width : 1) +
          define("ITEM_IS_TILE", state.item_is_tile ? 1 : 0) + define("MATERIALS", materials) +
-         define("HAS_DEPTH", frames.depth ? 1 : 0) + define("HAS_MATERIAL", frames.material ? 1 : 0) +
-         define("HAS_MASK", frames.mask ? 1 : 0) + define("HAS_ALBEDO", frames.albedo ? 1 : 0) +
-         define("PIXEL_WIDTH", state.has_pixel_width ? 1 : 0) +
+         define("TERMS", state.terms_per_material) + define("HAS_DEPTH", frames.depth ? 1 : 0) +
+         define("HAS_MATERIAL", frames.material ? 1 : 0) + define("HAS_MASK", frames.mask ? 1 : 0) +
+         define("HAS_ALBEDO", frames.albedo ? 1 : 0) + define("PIXEL_WIDTH", state.has_pixel_width ? 1 : 0) +
          define("LIT", state.options.lighting == Lighting::lit ? 1 : 0) +
          define("JITTER", state.options.jitter > 0 ? 1 : 0) + define("TABLE_SHIFT", 23 - log2_nodes_per_octave);
 }
@@ -136,17 +136,23 @@ Plan::Plan(const Device& device, std::vector<Material> materials, const FrameDes
                                              .options = options,
                                              .program = {},
                                              .materials = {},
+                                             .terms = {},
                                              .rungs = {},
-                                             .pairs = {},
+                                             .offsets = {},
+                                             .weights = {},
                                              .nodes = {},
+                                             .terms_per_material = 1,
                                              .has_pixel_width = frames.mask || follows_albedo,
                                              .item_is_tile = device.info().type != "GPU"});
   const MaterialTables tables = make_material_tables(materials, options);
+  state->terms_per_material = tables.terms_per_material;
   with_device_errors([&] {
     const cl::Context context(device.context(), true);
     state->materials = upload(context, tables.materials);
+    state->terms = upload(context, tables.terms);
     state->rungs = upload(context, tables.rungs);
-    state->pairs = upload(context, tables.pairs);
+    state->offsets = upload(context, tables.offsets_px);
+    state->weights = upload(context, tables.weights);
     state->nodes = upload(context, tables.nodes);
     state->program = build_program(
         context, cl::Device(device.id(), true),
@@ -211,7 +217,8 @@ Event Plan::enqueue(const Frame& frame, cl_command_queue queue, std::span<const 
 }
 
 std::size_t Plan::scratch_bytes(int width, int height) const {
-  return WorkingSize(width, height, state_->options).bytes(width, height, state_->has_pixel_width);
+  return WorkingSize(width, height, state_->options)
+      .bytes(width, height, state_->terms_per_material, state_->has_pixel_width);
 }
 
 }  // namespace dermis

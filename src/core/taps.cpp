@@ -4,119 +4,118 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
-#include <string>
 
+#include "core/designed_taps.hpp"
 #include "core/radial_table.hpp"
-#include "dermis/error.hpp"
 
 namespace dermis {
 
 namespace {
 
-constexpr double share_within_radius = 0.999;
-
 /// The bits of a float32 below those that number rungs.
 constexpr int bits_below_rung = 23 - Taps::log2_rungs_per_octave;
+constexpr int rungs_per_octave = 1 << Taps::log2_rungs_per_octave;
 
-/// A run of whole pixels on one side of the centre, in pixel units: from first_px - 1/2 to last_px + 1/2.
-struct Run {
-  int first_px;
-  int last_px;
-
-  double begin_px() const { return first_px - 0.5; }
-  double end_px() const { return last_px + 0.5; }
-};
-
-/// Splits the pixels beyond the core on one side into at most `count` runs of equal light in the widest channel. A run
-/// that would be narrower than a pixel takes one pixel, and the others share what is left.
-std::vector<Run> equal_shares(const Profile& profile, int widest, double footprint, int last_px, int core_px,
-                              int count) {
-  std::vector<Run> runs;
-  int next_px = core_px + 1;
-  while (next_px <= last_px && static_cast<int>(runs.size()) < count) {
-    const int runs_left = count - static_cast<int>(runs.size());
-    const double light_left = profile.edge_tail(widest, (next_px - 0.5) / footprint);
-    const double light_after = light_left * (1 - 1.0 / runs_left);
-    int end_px = last_px;
-    if (runs_left > 1) {
-      const double end_mm = profile.half_width(widest, 1 - 2 * light_after);
-      end_px = std::clamp(static_cast<int>(std::lround(end_mm * footprint - 0.5)), next_px, last_px);
-    }
-    runs.push_back({next_px, end_px});
-    next_px = runs.back().last_px + 1;
+/// The tables of one term, for radii up to radius_mm.
+Term make_term(const Profile& profile, const ModelTerm& model, double radius_mm) {
+  Term term;
+  term.normalised = model.normalised;
+  for (int c = 0; c < 3; ++c) {
+    term.scale[c] = static_cast<float>(model.scale[c]);
+    term.sum[c] = model.normalised ? 1 : static_cast<float>(model.functions[c].sum());
   }
-  return runs;
+  // 32 nodes per octave of r^2: linear interpolation is off by 6e-4 at most where the inner 2..99 % of the light are.
+  // The finest distance is that between pixels of the last rung; tilt stretches distances beyond the radius.
+  constexpr int log2_nodes_per_octave = 5;
+  const double finest_mm = radius_mm * std::ldexp(1.0, -Taps::octaves);
+  const auto falloff = [&](int c, double r) {
+    const double value = std::isinf(r) ? 0 : value_of(profile, c, model.functions[c], r);
+    return model.normalised ? std::max(value, 0.0) : value;
+  };
+  const auto core = [&](int c, double r) {
+    const TermFunction& f = model.functions[c];
+    return f.sum() - (std::isinf(r) ? 0 : 2 * tail_of(profile, c, f, r));
+  };
+  term.falloff = tabulate(falloff, finest_mm, 2 * radius_mm, log2_nodes_per_octave);
+  term.core = tabulate(core, finest_mm, 4 * radius_mm, log2_nodes_per_octave);
+  return term;
 }
 
-/// Pixels on each side of the centre that the centre tap stands for. More than 0 only where the taps are so far apart
-/// that the centre pixel holds less than half the light of what every other tap stands for.
-int core_pixels(const Profile& profile, int widest, double footprint, int count) {
-  const double share = 1.0 / (2 * count + 1);
-  return std::max(0, static_cast<int>(std::lround(profile.half_width(widest, share) * footprint - 0.5)));
+/// Surface that a pair stands for on one side: half the way to its neighbours.
+double length_px(const std::vector<double>& offsets_px, std::size_t i) {
+  const double before = i == 0 ? 0 : offsets_px[i - 1];
+  const double after = i + 1 < offsets_px.size() ? offsets_px[i + 1] : 2 * offsets_px[i] - before;
+  return (after - before) / 2;
 }
 
-/// Where in its run a tap sits: at the pixel that keeps the second moment of the kernel, of the pixels beside the
-/// centre of the run's light. The moments that earlier runs owe are carried along.
-class Placement {
- public:
-  Placement(const Profile& profile, int widest, double footprint)
-      : profile_(profile), widest_(widest), footprint_(footprint) {}
-
-  int offset_px(const Run& run) {
-    double light = 0;
-    double first_moment = 0;
-    double second_moment = 0;
-    const int parts = std::min(run.last_px - run.first_px + 1, max_parts);
-    const double part_px = (run.end_px() - run.begin_px()) / parts;
-    double light_beyond = profile_.edge_tail(widest_, run.begin_px() / footprint_);
-    for (int i = 0; i < parts; ++i) {
-      const double end_px = run.begin_px() + (i + 1) * part_px;
-      const double middle_px = end_px - part_px / 2;
-      const double light_before = light_beyond;
-      light_beyond = profile_.edge_tail(widest_, end_px / footprint_);
-      const double share = light_before - light_beyond;
-      light += share;
-      first_moment += share * middle_px;
-      second_moment += share * middle_px * middle_px;
+/// Makes a tap of one weight on a plane follow the term's f: a length times f. Where f has all but vanished at the tap
+/// it says nothing, and the weight is left out. A correction changes its sign, and near there f says little about the
+/// weight: it has a length no longer than is sensible, and the rest as a share of the weight in the first term, which
+/// falls with distance too.
+TapWeight follow(const std::array<double, 3>& weights, const std::array<double, 3>& densities,
+                 const std::array<double, 3>& first_weights, double its_length_mm, bool normalised) {
+  constexpr double longest_of_correction = 4;
+  constexpr double longest = 1e4;
+  TapWeight result{};
+  for (int c = 0; c < 3; ++c) {
+    if (densities[c] == 0) continue;
+    double length_mm = weights[c] / densities[c];
+    if (normalised) {
+      if (!(length_mm < longest * its_length_mm)) length_mm = 0;
+    } else {
+      length_mm = std::clamp(length_mm, 0.0, longest_of_correction * its_length_mm);
+      const double rest = weights[c] - length_mm * densities[c];
+      if (first_weights[c] > 0) result.share[c] = static_cast<float>(rest / first_weights[c]);
     }
-    if (light <= 0) return run.first_px;
-    const int low = std::clamp(static_cast<int>(first_moment / light), run.first_px, run.last_px);
-    const int high = std::min(low + 1, run.last_px);
-    const double owed_low = owed_ + second_moment - light * low * low;
-    const double owed_high = owed_ + second_moment - light * high * high;
-    const bool take_low = std::abs(owed_low) <= std::abs(owed_high);
-    owed_ = take_low ? owed_low : owed_high;
-    return take_low ? low : high;
+    result.length_mm[c] = static_cast<float>(length_mm);
   }
+  return result;
+}
 
- private:
-  static constexpr int max_parts = 16;  ///< of a run, for its moments
-
-  const Profile& profile_;
-  int widest_;
-  double footprint_;
-  double owed_ = 0;
-};
-
-Rung make_rung(const Profile& profile, const RadialTable& falloff, int widest, double radius_mm, double footprint,
-               int count) {
-  const int last_px = std::max(1, static_cast<int>(std::ceil(radius_mm * footprint - 0.5)));
-  const bool dense = last_px <= count;
-  const int core_px = dense ? 0 : core_pixels(profile, widest, footprint, count);
-  Rung rung{static_cast<float>(footprint), static_cast<float>(core_px + 0.5), {}};
-  Placement placement(profile, widest, footprint);
-  for (const Run& run : equal_shares(profile, widest, footprint, last_px, core_px, dense ? last_px : count)) {
-    TapPair pair{placement.offset_px(run), {}};
-    const double distance_mm = pair.offset_px / footprint;
+Rung make_rung(const SizedTaps& taps, const std::vector<Term>& terms, double footprint) {
+  Rung rung{static_cast<float>(footprint), static_cast<float>(taps.core_half_width_px), {}, {}, {}};
+  const double core_mm = rung.core_half_width_px / footprint;
+  const auto weights_of = [&](std::size_t row, std::size_t t) {
+    std::array<double, 3> weights;
     for (int c = 0; c < 3; ++c) {
-      // The last run also takes the light beyond the radius.
-      const double beyond = run.last_px == last_px ? 0 : profile.edge_tail(c, run.end_px() / footprint);
-      const double light = profile.edge_tail(c, run.begin_px() / footprint) - beyond;
-      const double density = value_at(falloff, c, distance_mm * distance_mm);
-      pair.length_mm[c] = density > 0 ? static_cast<float>(light / density) : 0.0F;
+      weights[c] = taps.placed.weights[c](static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(t));
     }
-    rung.pairs.push_back(pair);
+    return weights;
+  };
+  for (std::size_t t = 0; t < terms.size(); ++t) {
+    const std::array<double, 3> weights = weights_of(0, t);
+    std::array<float, 3> gain{};
+    for (int c = 0; c < 3; ++c) {
+      const double core = value_at(terms[t].core, c, core_mm * core_mm);
+      if (terms[t].normalised && core > 0) gain[c] = static_cast<float>(weights[c] / core);
+    }
+    rung.core_gain.push_back(gain);
   }
+  const std::vector<double>& offsets_px = taps.placed.offsets_px;
+  for (std::size_t i = 0; i < offsets_px.size(); ++i) {
+    rung.offsets_px.push_back(static_cast<int>(offsets_px[i]));
+    const double distance_mm = offsets_px[i] / footprint;
+    for (std::size_t t = 0; t < terms.size(); ++t) {
+      std::array<double, 3> densities;
+      for (int c = 0; c < 3; ++c) densities[c] = value_at(terms[t].falloff, c, distance_mm * distance_mm);
+      rung.weights.push_back(follow(weights_of(i + 1, t), densities, weights_of(i + 1, 0),
+                                    length_px(offsets_px, i) / footprint, terms[t].normalised));
+    }
+  }
+  return rung;
+}
+
+/// Offsets of one rung as a start for the next.
+std::vector<double> scaled(std::vector<double> offsets_px, double ratio) {
+  for (double& offset_px : offsets_px) offset_px *= ratio;
+  return offsets_px;
+}
+
+/// The same taps for pixels half the size.
+Rung spread(Rung rung) {
+  rung.footprint *= 2;
+  rung.core_half_width_px *= 2;
+  for (int& offset_px : rung.offsets_px) offset_px *= 2;
   return rung;
 }
 
@@ -129,35 +128,31 @@ int Taps::rung_index(float radius_px) {
   return std::min(static_cast<int>(steps), (octaves << log2_rungs_per_octave) - 1);
 }
 
-Taps Taps::importance_sampled(const Profile& profile, int count) {
-  if (count < 3 || count > 127 || count % 2 == 0) {
-    throw Error(ErrorCode::usage, "taps", std::to_string(count), "an odd number, 3..127");
-  }
-  const int widest = profile.widest_channel();
+Taps make_taps(const Profile& profile, const TapsDesign& design) {
+  check_design(design);
+  const DesignedTaps designed(profile, design);
   Taps taps;
-  taps.radius_mm = profile.half_width(widest, share_within_radius);
-  for (int c = 0; c < 3; ++c) {
-    const double radius_mm = profile.half_width(c, share_within_radius);
-    taps.radius_mm = std::max(taps.radius_mm, radius_mm);
-    taps.relative_width[c] = static_cast<float>(radius_mm);
-  }
-  for (float& width : taps.relative_width) width = static_cast<float>(width / taps.radius_mm);
-
-  // 32 nodes per octave of r^2: linear interpolation is off by less than 1e-4 where the profile still holds light. The
-  // finest distance is that between pixels of the last rung; tilt stretches distances beyond the radius.
-  const double finest_mm = taps.radius_mm * std::ldexp(1.0, -octaves);
-  constexpr int log2_nodes_per_octave = 5;
-  taps.falloff = tabulate([&](int c, double r) { return profile.marginal(c, r); }, finest_mm, 2 * taps.radius_mm,
-                          log2_nodes_per_octave);
-  taps.core = tabulate([&](int c, double r) { return 1 - 2 * profile.edge_tail(c, r); }, finest_mm, 4 * taps.radius_mm,
-                       log2_nodes_per_octave);
-
-  constexpr int per_octave = 1 << log2_rungs_per_octave;
-  for (int i = 0; i < octaves * per_octave; ++i) {
-    const double middle = 1 + (i % per_octave + 0.5) / per_octave;
-    const double radius_px = std::ldexp(min_radius_px * middle, i / per_octave);
-    taps.rungs.push_back(
-        make_rung(profile, taps.falloff, widest, taps.radius_mm, radius_px / taps.radius_mm, count / 2));
+  taps.radius_mm = designed.radius_mm();
+  for (int c = 0; c < 3; ++c) taps.relative_width[c] = static_cast<float>(designed.radius_mm(c) / taps.radius_mm);
+  for (const ModelTerm& term : designed.model()) taps.terms.push_back(make_term(profile, term, taps.radius_mm));
+  std::vector<double> near_px;
+  double previous_px = 0;
+  for (int i = 0; i < Taps::octaves * rungs_per_octave; ++i) {
+    const double middle = 1 + (i % rungs_per_octave + 0.5) / rungs_per_octave;
+    const double radius_px = std::ldexp(Taps::min_radius_px * middle, i / rungs_per_octave);
+    // Pixels are small against everything in wider kernels; the taps of one octave serve the next.
+    constexpr double widest_fitted_px = 512;
+    if (radius_px > widest_fitted_px && design.count < widest_fitted_px) {
+      taps.rungs.push_back(spread(taps.rungs[i - rungs_per_octave]));
+      continue;
+    }
+    const double footprint = radius_px / taps.radius_mm;
+    const bool as_many = static_cast<int>(near_px.size()) == design.count / 2;
+    const SizedTaps sized = designed.at(1 / footprint, Fetch::integer,
+                                        as_many ? scaled(near_px, radius_px / previous_px) : std::vector<double>{});
+    near_px = sized.placed.offsets_px;
+    previous_px = radius_px;
+    taps.rungs.push_back(make_rung(sized, taps.terms, footprint));
   }
   return taps;
 }

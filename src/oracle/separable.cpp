@@ -1,103 +1,106 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
+#include <cstddef>
+#include <span>
 #include <vector>
 
 #include "dermis/oracle/reference.hpp"
+#include "oracle/choice.hpp"
 #include "oracle/frame_images.hpp"
 #include "oracle/light.hpp"
-#include "oracle/radial_table.hpp"
 #include "oracle/recompose.hpp"
 #include "oracle/rotation.hpp"
 #include "oracle/surface.hpp"
-#include "oracle/weighted_mean.hpp"
+#include "oracle/tap_weights.hpp"
+#include "oracle/weighted_sum.hpp"
 
 namespace dermis::oracle {
 
 namespace {
 
 constexpr int span_px = 16;
-constexpr double host_rounding = 1e-6;  // relative: a device may compute its settings in float32
 
-/// A whole number that a device may round to another one.
-struct Choice {
-  int nominal;
-  int lowest;
-  int highest;
-};
+using Values = std::array<Bounded, 3>;
+using Outcome = std::vector<Values>;  ///< of a pass at a pixel: of each term, or the only one of the sum over terms
 
-/// The rung of a kernel radius: -1 below half a pixel, then 16 equal steps in each octave.
-int rung_of(double radius_px, const Taps& taps) {
-  const double ratio = radius_px / static_cast<double>(Taps::min_radius_px);
-  if (!(ratio >= 1)) return -1;
-  int exponent = 0;
-  const double fraction = 2 * std::frexp(ratio, &exponent) - 1;
-  constexpr int steps = 1 << Taps::log2_rungs_per_octave;
-  const double rung = steps * (exponent - 1.0) + std::floor(steps * fraction);
-  return static_cast<int>(std::min(rung, static_cast<double>(taps.rungs.size()) - 1));
+/// Takes another outcome of a device into the bounds.
+void admit(Outcome& outcome, const Outcome& other) {
+  for (std::size_t t = 0; t < outcome.size(); ++t) {
+    for (int c = 0; c < 3; ++c) {
+      Bounded& value = outcome[t][c];
+      value.error = std::max(value.error, std::abs(other[t][c].value - value.value) + other[t][c].error);
+    }
+  }
 }
 
-Choice rung_choice(Bounded span_footprint, const Taps& taps) {
-  const Bounded radius_px = span_footprint * as_float(taps.radius_mm);
-  return {rung_of(radius_px.value, taps), rung_of(radius_px.low(), taps), rung_of(radius_px.high(), taps)};
+/// The sum over terms of scale times value, added up in any order.
+Bounded scaled_sum(const Outcome& values, std::span<const Term> terms, int c) {
+  if (terms.size() == 1) return exact(terms[0].scale[c]) * values[0][c];
+  Bounded sum;
+  double magnitudes = 0;
+  for (std::size_t t = 0; t < terms.size(); ++t) {
+    const Bounded scaled = exact(terms[t].scale[c]) * values[t][c];
+    sum.value += scaled.value;
+    sum.error += scaled.error + 2 * smallest_normal;  // product or sum flushed to zero
+    magnitudes += scaled.magnitude();
+  }
+  sum.error += static_cast<double>(terms.size()) * unit_roundoff * magnitudes;
+  return sum;
 }
 
-/// How many of a rung's pairs are rotated, the innermost first.
-Choice rotated_choice(const Rung& rung, const Taps& taps, double jitter) {
-  const double reach_px = jitter * static_cast<double>(rung.footprint) * taps.radius_mm;
-  const auto within = [&](double reach) {
-    return static_cast<int>(std::count_if(rung.pairs.begin(), rung.pairs.end(),
-                                          [&](const TapPair& pair) { return pair.offset_px <= reach; }));
-  };
-  return {within(reach_px), within(reach_px * (1 - host_rounding)), within(reach_px * (1 + host_rounding))};
-}
-
-/// One pass over a frame, along one axis.
+/// One pass over a frame, along one axis. The horizontal one makes a picture of each term, the vertical one reads those
+/// and makes one picture of the sum over terms.
 class Pass {
  public:
   Pass(Axis axis, const Surface& surface, std::span<const Material> materials, const Frame& frame,
-       const Options& options, const BoundedPicture& input)
+       const Options& options, const BoundedPicture& light)
       : axis_(axis),
         surface_(surface),
         materials_(materials),
         camera_(frame.camera),
         options_(options),
-        input_(input) {}
+        light_(light) {}
 
-  BoundedPicture run();
+  /// `inputs`: what each term reads. Fills `outputs`, which hold the light so far.
+  void run(std::span<const BoundedPicture> inputs, std::span<BoundedPicture> outputs);
 
  private:
-  using Values = std::array<Bounded, 3>;
-
   Bounded span_footprint(int start, int y) const;
-  Values at(int x, int y, Bounded span_footprint);
-  Values unchanged(int x, int y) const;
-  Values scattered(int x, int y, const Rung& rung, int rotated);
-  void add_center(int x, int y, const Rung& rung);
-  void add_tap(int x, int y, int tap_x, int tap_y, const Rung& rung, const TapPair& pair);
+  std::span<const Term> terms_of(int x, int y) const { return materials_[surface_.at(x, y).material].taps.terms; }
+  Values input(std::size_t term, int x, int y) const;
+  Outcome at(int x, int y, Bounded span_footprint);
+  Outcome source(int x, int y) const;
+  Outcome without_taps(int x, int y) const;
+  Outcome with_taps(int x, int y, const Rung& rung, int rotated);
+  void add_center(int x, int y, const TapWeights& weights);
+  void add_tap(int x, int y, int tap_x, int tap_y, const TapWeights& weights, std::size_t pair);
+  Outcome finished(const Outcome& values, std::span<const Term> terms) const;
 
   Axis axis_;
   const Surface& surface_;
   std::span<const Material> materials_;
   Camera camera_;
   const Options& options_;
-  const BoundedPicture& input_;
-  std::array<WeightedMean, 3> means_;
+  const BoundedPicture& light_;
+  std::span<const BoundedPicture> inputs_;
+  std::vector<std::array<WeightedSum, 3>> sums_;  ///< of each term
 };
 
-BoundedPicture Pass::run() {
-  BoundedPicture output(surface_.width(), surface_.height());
+void Pass::run(std::span<const BoundedPicture> inputs, std::span<BoundedPicture> outputs) {
+  inputs_ = inputs;
   for (int y = 0; y < surface_.height(); ++y) {
     for (int start = 0; start < surface_.width(); start += span_px) {
       const Bounded footprint = span_footprint(start, y);
       for (int x = start; x < std::min(start + span_px, surface_.width()); ++x) {
-        const Values values = at(x, y, footprint);
-        for (int c = 0; c < 3; ++c) output.set(x, y, c, values[c]);
+        if (surface_.at(x, y).material < 0) continue;
+        const Outcome outcome = at(x, y, footprint);
+        for (std::size_t t = 0; t < outcome.size(); ++t) {
+          for (int c = 0; c < 3; ++c) outputs[t].set(x, y, c, outcome[t][c]);
+        }
       }
     }
   }
-  return output;
 }
 
 // The maximum over the pixels that a device surely scatters is its lower bound, that over those it may scatter the
@@ -116,92 +119,113 @@ Bounded Pass::span_footprint(int start, int y) const {
   return {nominal, std::max(high - nominal, nominal - low)};
 }
 
-Pass::Values Pass::unchanged(int x, int y) const {
+Values Pass::input(std::size_t term, int x, int y) const {
   Values values;
-  for (int c = 0; c < 3; ++c) values[c] = input_.at(x, y, c);
+  for (int c = 0; c < 3; ++c) values[c] = inputs_[term].at(x, y, c);
   return values;
 }
 
-/// Takes another outcome of a device into the bounds.
-void admit(std::array<Bounded, 3>& values, const std::array<Bounded, 3>& other) {
-  for (int c = 0; c < 3; ++c) {
-    values[c].error = std::max(values[c].error, std::abs(other[c].value - values[c].value) + other[c].error);
-  }
-}
-
 // Where a decision is too close for float32, every outcome is within the bound.
-Pass::Values Pass::at(int x, int y, Bounded span_footprint) {
+Outcome Pass::at(int x, int y, Bounded span_footprint) {
   const SurfacePixel& pixel = surface_.at(x, y);
-  if (!pixel.touched && !pixel.touched_unsure) return unchanged(x, y);
+  if (!pixel.touched && !pixel.touched_unsure) return source(x, y);
   const Taps& taps = materials_[pixel.material].taps;
   const Choice rung = rung_choice(span_footprint, taps);
   const auto outcome = [&](int index, int rotated) {
-    return index < 0 ? unchanged(x, y) : scattered(x, y, taps.rungs[index], rotated);
+    return index < 0 ? without_taps(x, y) : with_taps(x, y, taps.rungs[index], rotated);
   };
   const auto rotated = [&](int index) {
     return index < 0 ? Choice{0, 0, 0} : rotated_choice(taps.rungs[index], taps, options_.jitter);
   };
-  const int nominal = pixel.touched ? rung.nominal : -1;
-  Values values = outcome(nominal, rotated(nominal).nominal);
-  if (pixel.touched_unsure) admit(values, unchanged(x, y));
+  Outcome result = pixel.touched ? outcome(rung.nominal, rotated(rung.nominal).nominal) : source(x, y);
+  if (pixel.touched_unsure) admit(result, source(x, y));
   for (int index = rung.lowest; index <= rung.highest; ++index) {
     const Choice turned = rotated(index);
     for (int count = turned.lowest; count <= turned.highest; ++count) {
-      if (index != nominal || count != turned.nominal) admit(values, outcome(index, count));
+      const bool is_nominal = pixel.touched && index == rung.nominal && count == turned.nominal;
+      if (!is_nominal) admit(result, outcome(index, count));
     }
   }
-  return values;
+  return result;
 }
 
-Pass::Values Pass::scattered(int x, int y, const Rung& rung, int rotated) {
-  for (WeightedMean& mean : means_) mean.clear();
-  add_center(x, y, rung);
-  const Direction turned = Direction::turned(axis_, x, y, options_.seed, camera_);
-  for (std::size_t i = 0; i < rung.pairs.size(); ++i) {
-    const TapPair& pair = rung.pairs[i];
-    PixelOffset offset{0, 0};
-    offset[axis_] = pair.offset_px;
-    if (static_cast<int>(i) < rotated) offset = turned.offset(pair.offset_px);
-    add_tap(x, y, x + offset[0], y + offset[1], rung, pair);
-    add_tap(x, y, x - offset[0], y - offset[1], rung, pair);
-  }
+/// Of a pixel that gives light but takes none: the second pass makes of it what it was.
+Outcome Pass::source(int x, int y) const {
+  if (axis_ == horizontal) return without_taps(x, y);
   Values values;
-  for (int c = 0; c < 3; ++c) values[c] = means_[c].mean(input_.at(x, y, c));
-  return values;
+  for (int c = 0; c < 3; ++c) values[c] = light_.at(x, y, c);
+  return {values};
 }
 
-void Pass::add_center(int x, int y, const Rung& rung) {
+/// Of a kernel too narrow for taps: each term is its sum at one point.
+Outcome Pass::without_taps(int x, int y) const {
+  const std::span<const Term> terms = terms_of(x, y);
+  Outcome values;
+  for (std::size_t t = 0; t < terms.size(); ++t) {
+    values.push_back(input(t, x, y));
+    if (terms[t].normalised) continue;
+    for (int c = 0; c < 3; ++c) values[t][c] = exact(terms[t].sum[c]) * values[t][c];
+  }
+  return finished(values, terms);
+}
+
+Outcome Pass::with_taps(int x, int y, const Rung& rung, int rotated) {
   const SurfacePixel& pixel = surface_.at(x, y);
   const Taps& taps = materials_[pixel.material].taps;
-  for (int c = 0; c < 3; ++c) {
-    const Bounded half_width = exact(rung.core_half_width_px) * pixel.segment_mm[axis_] / pixel.width_factor[c];
-    means_[c].add(look_up(taps.core, c, half_width * half_width), input_.at(x, y, c));
+  const TapWeights weights(axis_, pixel, taps, rung);
+  sums_.resize(taps.terms.size());
+  for (auto& sum : sums_) {
+    for (WeightedSum& channel : sum) channel.clear();
+  }
+  add_center(x, y, weights);
+  const Direction turned = Direction::turned(axis_, x, y, options_.seed, camera_);
+  for (std::size_t i = 0; i < rung.offsets_px.size(); ++i) {
+    PixelOffset offset{0, 0};
+    offset[axis_] = rung.offsets_px[i];
+    if (static_cast<int>(i) < rotated) offset = turned.offset(rung.offsets_px[i]);
+    add_tap(x, y, x + offset[0], y + offset[1], weights, i);
+    add_tap(x, y, x - offset[0], y - offset[1], weights, i);
+  }
+  Outcome values;
+  for (std::size_t t = 0; t < taps.terms.size(); ++t) {
+    const Term& term = taps.terms[t];
+    values.push_back(input(t, x, y));
+    for (int c = 0; c < 3; ++c) {
+      const Bounded own = values[t][c];
+      values[t][c] = term.normalised ? sums_[t][c].mean(own) : sums_[t][c].about(own, term.sum[c]);
+    }
+  }
+  return finished(values, taps.terms);
+}
+
+/// Only a mean weighs the pixel itself.
+void Pass::add_center(int x, int y, const TapWeights& weights) {
+  const std::span<const Term> terms = terms_of(x, y);
+  for (std::size_t t = 0; t < terms.size(); ++t) {
+    if (!terms[t].normalised) continue;
+    for (int c = 0; c < 3; ++c) sums_[t][c].add(weights.center(t, c), inputs_[t].at(x, y, c));
   }
 }
 
-/// Squared distance, mm^2.
-Bounded distance2(const SurfacePixel& a, const SurfacePixel& b) {
-  if (&a == &b) return exact(0);
-  Bounded sum = exact(0);
-  for (int i = 0; i < 3; ++i) {
-    const Bounded difference = a.position_mm[i] - b.position_mm[i];
-    sum = sum + difference * difference;
+void Pass::add_tap(int x, int y, int tap_x, int tap_y, const TapWeights& weights, std::size_t pair) {
+  if (!surface_.shows(surface_.at(x, y).material, tap_x, tap_y)) return;
+  const TapWeights::Place place = weights.place(surface_.at(tap_x, tap_y));
+  for (std::size_t t = 0; t < sums_.size(); ++t) {
+    for (int c = 0; c < 3; ++c) sums_[t][c].add(weights.tap(place, pair, t, c), inputs_[t].at(tap_x, tap_y, c));
   }
-  return sum;
 }
 
-void Pass::add_tap(int x, int y, int tap_x, int tap_y, const Rung& rung, const TapPair& pair) {
-  const SurfacePixel& pixel = surface_.at(x, y);
-  if (!surface_.shows(pixel.material, tap_x, tap_y)) return;
-  const Taps& taps = materials_[pixel.material].taps;
-  const SurfacePixel& tap = surface_.at(tap_x, tap_y);
-  const Bounded d2 = distance2(pixel, tap);
-  const Bounded stretch = exact(rung.footprint) * tap.segment_mm[axis_];
-  for (int c = 0; c < 3; ++c) {
-    const Bounded k = pixel.width_factor[c];
-    const Bounded falloff = look_up(taps.falloff, c, d2 / (k * k));
-    means_[c].add(stretch * exact(pair.length_mm[c]) * falloff / k, input_.at(tap_x, tap_y, c));
-  }
+Outcome Pass::finished(const Outcome& values, std::span<const Term> terms) const {
+  if (axis_ == horizontal) return values;
+  Values sums;
+  for (int c = 0; c < 3; ++c) sums[c] = scaled_sum(values, terms, c);
+  return {sums};
+}
+
+std::size_t most_terms(std::span<const Material> materials) {
+  std::size_t most = 0;
+  for (const Material& material : materials) most = std::max(most, material.taps.terms.size());
+  return most;
 }
 
 }  // namespace
@@ -211,8 +235,11 @@ Reference separable(const Frame& frame, std::span<const Material> materials, con
   const Surface surface(frame, images, materials);
   const Light light(images, options);
   const BoundedPicture x = light.filtered();
-  const BoundedPicture across = Pass(horizontal, surface, materials, frame, options, x).run();
-  const BoundedPicture scattered = Pass(vertical, surface, materials, frame, options, across).run();
+  const std::vector<BoundedPicture> lights(most_terms(materials), x);
+  std::vector<BoundedPicture> across = lights;
+  Pass(horizontal, surface, materials, frame, options, x).run(lights, across);
+  BoundedPicture scattered = x;
+  Pass(vertical, surface, materials, frame, options, x).run(across, std::span(&scattered, 1));
   return recompose(surface, light, scattered);
 }
 

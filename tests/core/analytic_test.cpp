@@ -12,7 +12,9 @@ using dermis::Camera;
 using dermis::Device;
 using dermis::Frame;
 using dermis::FrameDescription;
+using dermis::Model;
 using dermis::Options;
+using dermis::Placement;
 using dermis::Plan;
 using dermis::Profile;
 
@@ -93,20 +95,20 @@ TEST_CASE("the light of one pixel on a plane is kept", "[analytic]") {
         for (int x = 0; x < 193; ++x) total += picture.scattered_at(x, y, c);
       }
       CHECK(total == Approx(7).epsilon(1e-5));
-      CHECK(picture.scattered_at(96, 80, c) < 3.5);  // it did spread
+      CHECK(picture.scattered_at(96, 80, c) < 5);  // it did spread
     }
   }
 }
 
 TEST_CASE("a straight edge has the analytic profile", "[analytic]") {
   // 25 taps put one on every pixel up to a radius of 12 px; there the error is that of the tables and of the light
-  // beyond the radius. With wider kernels a tap stands for several pixels, and the edge is a staircase within half the
-  // light of a tap.
+  // beyond the radius. With wider kernels a tap stands for several pixels, and the edge is a staircase of 25 steps,
+  // 0.04 high if they were equal; whole pixels make them unequal, most where light is both narrow and wide.
   const Device device = Device::open();
-  const Options options{.taps = 25};
+  const Options options{.taps = {.model = Model::pre_integrated, .count = 25, .placement = Placement::importance}};
   Random random(400);
   for (const dermis::Preset& preset : dermis::presets()) {
-    const double radius_mm = dermis::Taps::importance_sampled(preset.profile, 25).radius_mm;
+    const double radius_mm = dermis::make_taps(preset.profile, options.taps).radius_mm;
     for (const bool dense : {true, false}) {
       const double radius_px = dense ? random.uniform(3, 12) : random.uniform(30, 60);
       const double footprint = radius_px / radius_mm;
@@ -128,7 +130,7 @@ TEST_CASE("a straight edge has the analytic profile", "[analytic]") {
         }
       }
       CAPTURE(test_seed(), preset.name, radius_px, worst);
-      CHECK(worst <= (dense ? 2e-3 : 3e-2));
+      CHECK(worst <= (dense ? 3e-3 : 6e-2));
     }
   }
 }
@@ -155,7 +157,7 @@ TEST_CASE("the kernel has the same width in mm under every camera", "[analytic]"
     const int x = width / 2;
     const int y = height / 2;
     for (int c = 0; c < 3; ++c) picture.light_at(x, y, c) = 1;
-    picture.filter(device, profile, {.taps = 65});
+    picture.filter(device, profile, {.taps = {.count = 65}});
 
     std::vector<double> columns(width), rows(height);
     for (int j = 0; j < height; ++j) {

@@ -46,7 +46,7 @@ TEST_CASE("plans that cannot be", "[bad]") {
                         std::vector<dermis::Material> materials = skin) {
     return [=] { Plan(device, materials, frames, options); };
   };
-  check_error(plan({.taps = 4}), ErrorCode::usage, "taps: got 4, want an odd number, 3..127");
+  check_error(plan({.taps = {.count = 4}}), ErrorCode::usage, "taps: got 4, want an odd number, 3..2047");
   check_error(plan({.jitter = 1.5}), ErrorCode::usage, "jitter: got 1.500000, want 0..1");
   check_error(plan({.jitter = NAN}), ErrorCode::usage, "jitter: got nan, want 0..1");
   check_error(plan({.albedo_mix = -0.5}), ErrorCode::usage, "albedo_mix: got -0.500000, want 0..1");

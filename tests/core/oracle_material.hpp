@@ -6,12 +6,14 @@
 #include "dermis/oracle/reference.hpp"
 
 inline std::vector<dermis::oracle::Material> oracle_materials(const std::vector<dermis::Material>& materials,
-                                                              int taps) {
+                                                              const dermis::TapsDesign& taps) {
   std::vector<dermis::oracle::Material> result;
-  for (const auto& [id, profile] : materials) {
-    result.push_back({id, profile.width_follows_albedo(), dermis::Taps::importance_sampled(profile, taps),
-                      [profile = profile](int c, double r) { return profile.radial(c, r); },
-                      [profile = profile](int c, double r) { return profile.cdf(c, r); }});
+  for (const dermis::Material& material : materials) {
+    const dermis::Profile& profile = material.profile;
+    result.push_back({material.id, profile.width_follows_albedo(),
+                      dermis::make_taps(profile, material.taps.value_or(taps)),
+                      [profile](int c, double r) { return profile.radial(c, r); },
+                      [profile](int c, double r) { return profile.cdf(c, r); }});
   }
   return result;
 }

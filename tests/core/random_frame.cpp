@@ -30,6 +30,18 @@ Camera random_camera(Random& random, int width, int height, double px_per_mm, do
                              width * random.uniform(0.2, 0.8), height * random.uniform(0.2, 0.8));
 }
 
+dermis::TapsDesign random_design(Random& random) {
+  dermis::TapsDesign design;
+  design.model = static_cast<dermis::Model>(random.integer(0, 5));
+  if (design.model == dermis::Model::svd || design.model == dermis::Model::gaussians)
+    design.rank = random.integer(1, 6);
+  if (design.model == dermis::Model::optimised) design.rank = random.integer(1, 3);
+  design.count = 2 * random.integer(1, 16) + 1;
+  design.placement = static_cast<dermis::Placement>(random.integer(0, 3));
+  design.guide = random.uniform(0, 4);
+  return design;
+}
+
 }  // namespace
 
 RandomFrame::RandomFrame(Random& random, const RandomFrameChoice& choice) : width(choice.width), height(choice.height) {
@@ -51,9 +63,12 @@ RandomFrame::RandomFrame(Random& random, const RandomFrameChoice& choice) : widt
     constexpr Format id_formats[] = {Format::f32, Format::u8, Format::u16, Format::u32, Format::f16};
     material.emplace(width, height, 1, id_formats[random.integer(0, 4)], gaps);
   }
-  for (int i = 0; i < count; ++i) materials.push_back({10 + 3 * i, random_profile(random, with_albedo)});
+  for (int i = 0; i < count; ++i) {
+    materials.push_back({10 + 3 * i, random_profile(random, with_albedo)});
+    if (random.integer(0, 2) == 0) materials.back().taps = random_design(random);
+  }
 
-  options.taps = 2 * random.integer(1, 16) + 1;
+  options.taps = random_design(random);
   options.jitter = choice.jitter.value_or(random.coin() ? 0 : random.uniform(0, 1));
   options.seed = static_cast<std::uint32_t>(random.integer(0, 1 << 30));
   options.lighting = with_albedo && random.coin() ? dermis::Lighting::lit : dermis::Lighting::raw;

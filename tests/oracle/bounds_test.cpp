@@ -1,5 +1,6 @@
 // The oracle's rounding bounds: no float32 evaluation may leave them, and they are not so wide as to hide a fault.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -24,14 +25,41 @@ Material ladder_material(double sigma_mm, int id, int step_px) {
   for (int i = 0; i < 6 * 16; ++i) {
     const double radius_px = std::ldexp(0.5 * (1 + (i % 16 + 0.5) / 16), i / 16);
     const double px_per_mm = radius_px / taps.radius_mm;
-    Rung rung{static_cast<float>(px_per_mm), 0.5F, {}};
     const auto length = static_cast<float>(step_px / px_per_mm);
-    for (int offset = step_px; offset < radius_px; offset += step_px) {
-      rung.pairs.push_back({offset, {length, length * 0.9F, length * 1.1F}});
-    }
+    std::vector<int> offsets_px;
+    for (int offset = step_px; offset < radius_px; offset += step_px) offsets_px.push_back(offset);
+    Rung rung = made_rung(px_per_mm, offsets_px, 0);
+    for (TapWeight& weight : rung.weights) weight.length_mm = {length, length * 0.9F, length * 1.1F};
     taps.rungs.push_back(rung);
   }
   return material;
+}
+
+/// Adds up to `most` terms of either kind, each of other taps on each rung.
+void add_terms(Random& random, Taps& taps, double sigma_mm, int most) {
+  const auto any = [&](double low, double high) {
+    std::array<float, 3> values{};
+    for (float& value : values) value = static_cast<float>(random.uniform(low, high));
+    return values;
+  };
+  for (int t = random.integer(0, most); t > 0; --t) {
+    Term term = gaussian_term(sigma_mm * random.uniform(0.3, 1));
+    term.normalised = random.coin();
+    term.sum = random.coin() ? std::array<float, 3>{} : any(-1, 1);
+    add_term(taps, term, {}, random.uniform(0.5, 1));
+    const std::size_t terms = taps.terms.size();
+    const bool shares = random.coin();
+    for (Rung& rung : taps.rungs) {
+      const double length = random.uniform(0, 1) * static_cast<double>(1 / rung.footprint);
+      for (std::size_t i = terms - 1; i < rung.weights.size(); i += terms) {
+        // Weights of a mean do not cancel.
+        rung.weights[i].length_mm = any(term.normalised ? 0 : -length, length);
+        if (shares) rung.weights[i].share = any(term.normalised ? 0 : -1, 1);
+      }
+    }
+  }
+  for (Term& term : taps.terms) term.scale = any(-1, 1);
+  taps.terms[0].scale = any(0.5, 1.5);
 }
 
 std::vector<float> noise(Random& random, std::size_t count, double low, double high) {
@@ -92,17 +120,21 @@ double largest(const Picture& picture) { return *std::max_element(picture.values
 
 TEST_CASE("float32 stays within the bounds on random frames", "[bounds]") {
   Random random(3);
-  std::vector materials{ladder_material(1, 0, 1), ladder_material(0.4, 1, 2)};
-  materials[1].width_follows_albedo = true;
   double worst = 0;
   int changed = 0;
   const int sizes[][2] = {{1, 1}, {7, 5}, {40, 23}, {33, 64}, {17, 1}, {1, 40}};
-  for (int round = 0; round < 24; ++round) {
+  for (int round = 0; round < 48; ++round) {
     const int* size = sizes[round % 6];
+    std::vector materials{ladder_material(1, 0, 1), ladder_material(0.4, 1, 2)};
+    materials[1].width_follows_albedo = true;
+    if (round >= 6) {
+      add_terms(random, materials[0].taps, 1, 3);
+      add_terms(random, materials[1].taps, 0.4, 2);
+    }
     const MadeFrame made = random_frame(random, size[0], size[1]);
     const Options options = random_options(random);
     const Reference reference = separable(made.frame(), materials, options);
-    const FloatFilter filter(made, materials, options);
+    const FloatFilter filter(made, materials, options, {random.coin(), random.coin(), random.coin()});
     INFO("round " << round);
     worst = std::max(worst, largest_share(filter.scattered, reference.scattered, reference.scattered_bound));
     worst = std::max(worst, largest_share(filter.result, reference.result, reference.result_bound));
@@ -126,6 +158,23 @@ TEST_CASE("bounds are narrow on ordinary frames", "[bounds]") {
   }
 }
 
+TEST_CASE("bounds of several terms are narrow on ordinary frames", "[bounds]") {
+  Material material = ladder_material(1, 0, 1);
+  add_term(material.taps, gaussian_term(0.5), {{0.2F, 0.2F, 0.2F}, {0.5F, 0.5F, 0.5F}});
+  Term correction = gaussian_term(0.5);
+  correction.normalised = false;
+  correction.sum = {};
+  for (int i = 0; i < 2; ++i) add_term(material.taps, correction, {{0.2F, 0.1F, 0.3F}, {-0.5F, -0.4F, -0.3F}});
+  material.taps.terms[0].scale = grey(0.75);
+  material.taps.terms[1].scale = grey(0.25);
+  Scene scene = oracle::scene("step", 65, 48);
+  Frame frame = scene.frame();
+  frame.material = {};
+  const Reference reference = separable(frame, std::span(&material, 1), {});
+  CHECK(largest(reference.scattered) > 0.01);
+  CHECK(largest(reference.scattered_bound) < 1e-4 * largest(reference.scattered));
+}
+
 TEST_CASE("the bound admits both sides of a decision that float32 cannot make", "[bounds]") {
   // A kernel of exactly half a pixel, up to the rounding of 0.1.
   MadeFrame made(16, 1, Camera::orthographic(0.1, 0.1), 0);
@@ -137,6 +186,70 @@ TEST_CASE("the bound admits both sides of a decision that float32 cannot make", 
   material.taps.radius_mm = 5.001;
   const Reference clear = separable(made.frame(), std::span(&material, 1), {});
   CHECK(clear.scattered_bound(8, 0) < 1e-5);
+}
+
+TEST_CASE("the bound admits that a pixel beside wider ones is left alone", "[bounds]") {
+  // Half a pixel again, but only the lit one: its span has taps all the same.
+  MadeFrame made(16, 1, Camera::orthographic(0.1, 0.1), 0);
+  made.light[3 * 8] = 1;
+  made.mask.assign(16, 1);
+  made.mask[8] = 0.5F;
+  Material material = gaussian_material(20, 0.1);
+  add_term(material.taps, gaussian_term(10), {{10, 10, 10}, {}});
+  material.taps.terms[1].scale = grey(0.5);  // so that nothing but being left alone gives back the light
+  material.taps.radius_mm = 10;
+  const Reference close = separable(made.frame(), std::span(&material, 1), {});
+  CHECK(close.scattered(8, 0) < 0.9);
+  CHECK(close.scattered(8, 0) + close.scattered_bound(8, 0) >= 1);
+  material.taps.radius_mm = 10.001;
+  const Reference clear = separable(made.frame(), std::span(&material, 1), {});
+  CHECK(clear.scattered_bound(8, 0) < 1e-5);
+}
+
+TEST_CASE("the bound admits either rung", "[bounds]") {
+  // At 17/16 of half a pixel the second rung begins, the first one to have taps.
+  Material material = tiny_material();
+  material.taps.radius_mm = 0.5;
+  material.taps.rungs = {made_rung(1, {}, 1), made_rung(1, {1}, 1)};
+  const auto bound_at = [&](double px_per_mm) {
+    MadeFrame made(3, 1, Camera::orthographic(px_per_mm, 1), 0);
+    made.light[3] = 1;
+    const Reference reference = separable(made.frame(), std::span(&material, 1), {});
+    CHECK(reference.scattered(1, 0) < 0.6);
+    return reference.scattered_bound(1, 0);
+  };
+  CHECK(bound_at(1.0625) > 0.4);
+  CHECK(bound_at(1.0626) < 1e-5);
+}
+
+TEST_CASE("the bound admits taps rotated or not", "[bounds]") {
+  // A pair of taps at 8 px where rotation ends; lit are the two that it reads when it is not rotated.
+  Material material = tiny_material();
+  material.taps.radius_mm = 8;
+  material.taps.terms[0].falloff = {-4, 0, {grey(0.25)}};
+  material.taps.rungs = {made_rung(1, {8}, 1)};
+  MadeFrame made(17, 17, Camera::orthographic(1, 1), 0);
+  for (const std::size_t x : {0U, 16U}) made.light[3 * (17 * 8 + x)] = 1;
+  Options options;
+  options.seed = 3;
+  for (const double jitter : {1.0, 1.001, 0.0}) {
+    options.jitter = jitter;
+    const Reference reference = separable(made.frame(), std::span(&material, 1), options);
+    INFO("jitter " << jitter);
+    CHECK((reference.scattered(8, 8) > 0.1) == (jitter == 0));
+    CHECK((reference.scattered_bound(8, 8) > 0.1) == (jitter == 1));
+  }
+}
+
+TEST_CASE("the sum over terms is rounded", "[bounds]") {
+  const MadeFrame made(5, 5, Camera::orthographic(1, 1), 3);
+  Material material = tiny_material();
+  const double alone = separable(made.frame(), std::span(&material, 1), {}).scattered_bound(2, 2);
+  add_term(material.taps, material.taps.terms[0], {{1, 1, 1}, {}});
+  share_out(material.taps, 0.25);
+  const double both = separable(made.frame(), std::span(&material, 1), {}).scattered_bound(2, 2);
+  // Once for the product and, at most, once for each term.
+  CHECK(both - alone == Approx(3 * 3 * 0x1p-24).epsilon(1e-3));
 }
 
 }  // namespace dermis::oracle

@@ -17,7 +17,8 @@ namespace {
 Material material_of(const Profile& profile, int taps, int id = 1) {
   Material material;
   material.id = id;
-  material.taps = Taps::importance_sampled(profile, taps);
+  material.taps =
+      make_taps(profile, {.model = Model::pre_integrated, .count = taps, .placement = Placement::importance});
   material.radial = [profile](int c, double r) { return profile.radial(c, r); };
   material.cdf = [profile](int c, double r) { return profile.cdf(c, r); };
   return material;

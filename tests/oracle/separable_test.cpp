@@ -1,44 +1,17 @@
+// The taps of the passes: where they lie and what they are worth.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <set>
-#include <span>
 #include <vector>
 
 #include "catch.hpp"
-#include "dermis/error.hpp"
-#include "dermis/oracle/compare.hpp"
 #include "dermis/oracle/reference.hpp"
 #include "made_frame.hpp"
 #include "made_taps.hpp"
 #include "random.hpp"
+#include "separable_run.hpp"
 
 namespace dermis::oracle {
-
-namespace {
-
-const Camera one_px_per_mm = Camera::orthographic(1, 1);
-
-Reference run(const MadeFrame& made, const Material& material, const Options& options = {}) {
-  return separable(made.frame(), std::span(&material, 1), options);
-}
-
-/// Three pixels in a row or a column with the light 1, 10, 100 in red.
-MadeFrame three_pixels(bool column = false) {
-  MadeFrame made(column ? 1 : 3, column ? 3 : 1, one_px_per_mm, 0);
-  made.light[0] = 1;
-  made.light[3] = 10;
-  made.light[6] = 100;
-  return made;
-}
-
-double largest(const Picture& picture) {
-  double value = 0;
-  for (const double v : picture.values) value = std::max(value, v);
-  return value;
-}
-
-}  // namespace
 
 TEST_CASE("three pixels by hand", "[separable]") {
   for (const bool column : {false, true}) {
@@ -82,7 +55,7 @@ TEST_CASE("perspective: size of a pixel and position by hand", "[separable]") {
   // P_0 = (-1/2, 0, 4), P_1 = (1/4, 0, 2): r^2 = 4.5625 is beyond the table.
   CHECK(run(made, tiny_material()).scattered(1, 0) == 0);
   Material wide = tiny_material();
-  wide.taps.falloff.values = {{0.25F, 0.25F, 0.25F}, {0.125F, 0.125F, 0.125F}, {0.1F, 0.1F, 0.1F}, {0, 0, 0}};
+  wide.taps.terms[0].falloff.values = {grey(0.25), grey(0.125), grey(0.1), {0, 0, 0}};
   const double falloff = static_cast<double>(0.1F) * (8 - 4.5625) / 4;
   const Reference reference = run(made, wide);
   // dP/dx is (1 + 1/8 * 2, 0, -2) at the first pixel, (1/2 - 1/8 * 2, 0, -2) at the second.
@@ -95,7 +68,7 @@ TEST_CASE("perspective: size of a pixel and position by hand", "[separable]") {
 TEST_CASE("the mask makes the profile narrower", "[separable]") {
   // k = 1/2: distances count double, weights double; 1 mm at k = 1/2 is r^2 = 4.
   Material material = tiny_material();
-  material.taps.falloff.values.back() = {0.0625F, 0.0625F, 0.0625F};
+  material.taps.terms[0].falloff.values.back() = grey(0.0625);
   MadeFrame made = three_pixels();
   made.mask = {1, 0.5F, 1};
   const Reference reference = run(made, material);
@@ -105,12 +78,13 @@ TEST_CASE("the mask makes the profile narrower", "[separable]") {
 TEST_CASE("the core is that of the pixel's own footprint and width", "[separable]") {
   Material material = tiny_material();
   material.taps.radius_mm = 10;
-  material.taps.core = made_table([](double r) { return r * r; }, -4, 4, 0);  // linear in r^2: interpolates exactly
+  material.taps.terms[0].core =
+      made_table([](double r) { return r * r; }, -4, 4, 0);  // linear in r^2: interpolates exactly
   MadeFrame made = three_pixels();
   made.camera = Camera::orthographic(2, 2);  // r^2 = 1/4 to the next pixel, below the first node: falloff 1/4
   made.mask = {1, 0.25F, 1};
   // Centre: half a pixel is 1/4 mm, over k that is 1 mm. Taps: r^2 / k^2 = 4, the last node.
-  material.taps.falloff.values.back() = {0.0625F, 0.0625F, 0.0625F};
+  material.taps.terms[0].falloff.values.back() = grey(0.0625);
   const double tap = 0.5 * 0.0625 / 0.25;
   CHECK(run(made, material).scattered(1, 0) == Approx((1 * 10 + tap * 101) / (1 + 2 * tap)));
 }
@@ -118,7 +92,7 @@ TEST_CASE("the core is that of the pixel's own footprint and width", "[separable
 TEST_CASE("the rung is chosen by the widest kernel of the span", "[separable]") {
   Material material = tiny_material();
   material.taps.radius_mm = 0.5;
-  material.taps.rungs = {{1, 0.5F, {}}, {1, 0.5F, {{1, {1, 1, 1}}}}};
+  material.taps.rungs = {made_rung(1, {}, 1), made_rung(1, {1}, 1)};
   MadeFrame made(33, 1, one_px_per_mm, 0);
   for (int x = 0; x < 33; ++x) made.light[3 * static_cast<std::size_t>(x)] = static_cast<float>(x * x);
   CHECK(run(made, material).scattered(5, 0) == 25);  // radius 0.5 px: rung 0, which has no taps
@@ -141,8 +115,8 @@ TEST_CASE("the rung is chosen by the widest kernel of the span", "[separable]") 
 TEST_CASE("a narrow pixel has no say in the rung of its span", "[separable]") {
   // Material 2 is narrow at a full mask; material 1 is just wide enough at half of it.
   std::vector materials{tiny_material(1), tiny_material(2)};
-  materials[0].taps.rungs = {{1, 0.5F, {}}, {1, 0.5F, {{1, {1, 1, 1}}}}};
-  materials[0].taps.falloff.values.back() = {0.1F, 0.1F, 0.1F};
+  materials[0].taps.rungs = {made_rung(1, {}, 1), made_rung(1, {1}, 1)};
+  materials[0].taps.terms[0].falloff.values.back() = grey(0.1);
   materials[1].taps.radius_mm = 0.25;
   MadeFrame made = three_pixels();
   made.mask = {0.5F, 0.5F, 1};
@@ -156,101 +130,15 @@ TEST_CASE("a narrow pixel has no say in the rung of its span", "[separable]") {
   CHECK(wide.scattered(0, 0) > 1.5);  // rung 1
 }
 
-TEST_CASE("kernels narrower than half a pixel leave the pixel alone but give light", "[separable]") {
-  MadeFrame made = three_pixels();
-  made.mask = {1, 0.49F, 1};
-  const Reference reference = run(made, tiny_material());
-  CHECK(reference.touched.values == std::vector<double>{1, 0, 1});
-  CHECK(reference.scattered(1, 0) == 10);
-  CHECK(reference.scattered(0, 0) == Approx((0.5 * 1 + 0.25 * 10) / 0.75));
-}
-
 TEST_CASE("a kernel may be narrow along one axis only", "[separable]") {
   MadeFrame made(3, 3, Camera::orthographic(0.4, 1), 0);
   made.light[3 * 4] = 1;
   Material material = tiny_material();
-  material.taps.falloff = {-4, 0, {{0.25F, 0.25F, 0.25F}}};
+  material.taps.terms[0].falloff = {-4, 0, {grey(0.25)}};
   const Reference reference = run(made, material);
   CHECK(reference.touched.values == std::vector<double>(9, 1));
   CHECK(reference.scattered(0, 1) == 0);
   CHECK(reference.scattered(1, 0) > 0.2);
-}
-
-TEST_CASE("pixels that show no surface neither give nor take", "[separable]") {
-  const float inf = std::numeric_limits<float>::infinity();
-  const float nan = std::numeric_limits<float>::quiet_NaN();
-  Options options;
-  Material material = tiny_material(3);
-  const auto check = [&](MadeFrame made) {
-    const Reference reference = run(made, material, options);
-    CHECK(reference.touched.values == std::vector<double>{1, 0, 1});
-    CHECK(reference.scattered(0, 0) == 1);
-    CHECK(reference.scattered(2, 0) == 100);
-    if (std::isfinite(made.light[3])) CHECK(reference.scattered(1, 0) == 10);
-  };
-  for (const float depth : {nan, inf, -inf, 1e9F, 1e10F}) {
-    MadeFrame made = three_pixels();
-    made.depth = {1, depth, 1};
-    check(made);
-  }
-  for (const float depth : {0.0F, -1.0F}) {
-    MadeFrame made = three_pixels();
-    made.camera = Camera::perspective(1, 1, 1.5, 0.5);
-    made.depth = {1, depth, 1};
-    check(made);
-  }
-  for (const float mask : {nan, inf, 0.0F, -0.5F}) {
-    MadeFrame made = three_pixels();
-    made.mask = {1, mask, 1};
-    check(made);
-  }
-  for (const float bad : {nan, inf, -inf}) {
-    MadeFrame made = three_pixels();
-    made.light[4] = bad;
-    check(made);
-    made = three_pixels();
-    made.albedo.assign(9, 0.5F);
-    made.albedo[5] = bad;
-    check(made);
-  }
-  for (const float id : {0.0F, 4.0F, 3.002F, 2.998F, 3.5F, -3.0F, nan, inf}) {
-    MadeFrame made = three_pixels();
-    made.material = {3, id, 3.0009F};
-    check(made);
-  }
-}
-
-TEST_CASE("orthographic surfaces may lie behind the camera plane", "[separable]") {
-  MadeFrame made = three_pixels();
-  made.depth = {-5, -5, -5};
-  CHECK(run(made, tiny_material()).scattered(1, 0) == Approx(0.5 * 10 + 0.25 * 101));
-}
-
-TEST_CASE("materials do not mix", "[separable]") {
-  Random random(1);
-  MadeFrame made(37, 11, Camera::perspective(40, 50, 18, 5), 0);
-  for (float& v : made.light) v = static_cast<float>(random.uniform(0, 1));
-  for (std::size_t i = 0; i < made.pixels(); ++i) {
-    made.depth.push_back(static_cast<float>(random.uniform(9, 10)));
-    made.material.push_back(static_cast<float>(random.integer(0, 3)));
-  }
-  const std::vector materials{gaussian_material(0.5, 4, 1), gaussian_material(0.3, 4, 2)};
-  Options options;
-  options.jitter = 0.5;
-  const Reference before = separable(made.frame(), materials, options);
-  for (std::size_t i = 0; i < made.pixels(); ++i) {
-    if (made.material[i] != 1) MadeFrame::set_rgb(made.light, i, 5, 6, 7);
-  }
-  const Reference after = separable(made.frame(), materials, options);
-  int changed = 0;
-  for (std::size_t i = 0; i < made.pixels(); ++i) {
-    for (std::size_t c = 0; c < 3; ++c) {
-      const bool same = before.scattered.values[3 * i + c] == after.scattered.values[3 * i + c];
-      if (made.material[i] == 1 && !same) FAIL_CHECK("light crossed at " << i);
-      changed += same ? 0 : 1;
-    }
-  }
-  CHECK(changed > 300);
 }
 
 TEST_CASE("constant light stays constant", "[separable]") {
@@ -324,93 +212,13 @@ TEST_CASE("the footprint scales the kernel in millimetres, whatever the camera",
   }
 }
 
-TEST_CASE("the width may follow the albedo", "[separable]") {
-  Material material = gaussian_material(2, 4);
-  material.width_follows_albedo = true;
-  material.taps.radius_mm = 100;  // wide enough for any albedo
-  MadeFrame made(41, 1, Camera::orthographic(4, 4), 0);
-  made.albedo.assign(3 * 41, 0.8F);
-  for (std::size_t i = 0; i < 41; ++i) made.albedo[3 * i + 1] = 0;
-  for (std::size_t i = 0; i < 41; ++i) made.albedo[3 * i + 2] = 5;  // counts as 1
-  MadeFrame::set_rgb(made.light, 20, 1, 1, 1);
-  const Reference reference = run(made, material);
-  const double k[] = {1 / 1.1, 1 / (1.9 + 3.5 * 0.64), 1 / (0.9 + 3.5 * 0.04)};
-  for (int c = 0; c < 3; ++c) {
-    const double sigma_px = 8 * k[c];
-    const double fall = reference.scattered(23, 0, c) / reference.scattered(21, 0, c);
-    CHECK(fall == Approx(std::exp(-(9 - 1) / (2 * sigma_px * sigma_px))).epsilon(0.01));
-  }
-}
-
-TEST_CASE("albedo before and after the passes", "[separable]") {
-  // Reflectance 1/4 and 1 beside each other; beauty has 3 on top of the diffuse light.
-  MadeFrame made(2, 1, one_px_per_mm, 0);
-  const auto red = [](std::vector<float>& image, float a, float b) {
-    image.assign(6, 0);
-    image[0] = a;
-    image[3] = b;
-  };
-  red(made.albedo, 0.25F, 1);
-  red(made.beauty, 3 + 2, 3 + 4);
-  Options options;
-  for (const Lighting lighting : {Lighting::raw, Lighting::lit}) {
-    options.lighting = lighting;
-    lighting == Lighting::raw ? red(made.light, 8, 4) : red(made.light, 2, 4);  // irradiance 8 and 4 both times
-    for (const double m : {0.0, 0.5, 1.0}) {
-      INFO("lit " << (lighting == Lighting::lit) << " mix " << m);
-      options.albedo_mix = m;
-      const Reference reference = run(made, tiny_material(), options);
-      const double a = 8 * std::pow(0.25, m);
-      const double left = (0.5 * a + 0.25 * 4) / 0.75;
-      const double right = (0.5 * 4 + 0.25 * a) / 0.75;
-      CHECK(reference.scattered(0, 0) == Approx(left));
-      CHECK(reference.scattered(1, 0) == Approx(right));
-      CHECK(reference.result(0, 0) == Approx(3 + std::pow(0.25, 1 - m) * left));
-      CHECK(reference.result(1, 0) == Approx(3 + right));
-    }
-  }
-}
-
-TEST_CASE("albedo that holds no light", "[separable]") {
-  MadeFrame made(2, 1, one_px_per_mm, 3);
-  made.albedo = {0, 0.00005F, -0.5F, 1, 1, 1};
-  made.beauty.assign(6, 0);
-  Options options;
-  options.lighting = Lighting::lit;
-  const Reference lit = run(made, tiny_material(), options);
-  for (int c = 0; c < 3; ++c) CHECK(lit.scattered(0, 0, c) == Approx(0.25 * 3 / 0.75));
-  CHECK(lit.result(0, 0, 0) == -3);
-  CHECK(lit.result(0, 0, 2) == -3);
-
-  options.lighting = Lighting::raw;
-  const Reference raw = run(made, tiny_material(), options);
-  for (int c = 0; c < 3; ++c) CHECK(raw.scattered(0, 0, c) == Approx(3));
-  options.albedo_mix = 0.5;
-  const Reference mixed = run(made, tiny_material(), options);
-  CHECK(mixed.scattered(0, 0, 0) == Approx(0.25 * 3 / 0.75));
-  CHECK(mixed.scattered(0, 0, 2) == Approx(0.25 * 3 / 0.75));
-}
-
-TEST_CASE("beauty stays as it is where nothing scatters", "[separable]") {
-  MadeFrame made = three_pixels();
-  made.beauty = {0.1F, 0.2F, 0.3F, 0.4F, 0.5F, 0.6F, 0.7F, 0.8F, 0.9F};
-  made.material = {0, 7, 7};
-  const Reference reference = run(made, tiny_material(7));
-  CHECK(reference.touched.values == std::vector<double>{0, 1, 1});
-  for (int c = 0; c < 3; ++c) {
-    CHECK(reference.result(0, 0, c) == static_cast<double>(made.beauty[static_cast<std::size_t>(c)]));
-    CHECK(reference.result_bound(0, 0, c) == 0);
-  }
-  CHECK(reference.result(1, 0) == Approx(0.4 + (0.5 * 10 + 0.25 * 100) / 0.75 - 10));
-}
-
 TEST_CASE("rotated taps keep their distance and mirror each other", "[separable]") {
   // One pair of taps at 8 px. Only the middle is wide enough to be scattered, so both passes read plain light from the
   // others: x in red, x^2 in green, y^2 in blue.
   Material material = tiny_material();
   material.taps.radius_mm = 8;
-  material.taps.falloff = {-4, 0, {{0.25F, 0.25F, 0.25F}}};
-  material.taps.rungs = {{1, 0.5F, {{8, {1, 1, 1}}}}};
+  material.taps.terms[0].falloff = {-4, 0, {grey(0.25)}};
+  material.taps.rungs = {made_rung(1, {8}, 1)};
   MadeFrame made(21, 21, one_px_per_mm, 0);
   for (int y = -10; y <= 10; ++y) {
     for (int x = -10; x <= 10; ++x) {
@@ -440,32 +248,6 @@ TEST_CASE("rotated taps keep their distance and mirror each other", "[separable]
   const Reference straight = run(made, material, options);
   CHECK(straight.scattered(10, 10, 1) == Approx(0.25 * 64));
   CHECK(straight.scattered(10, 10, 2) == Approx(0.5 * 64));
-}
-
-TEST_CASE("the frame and the materials are checked", "[separable]") {
-  const auto code = [](const MadeFrame& made, std::vector<Material> materials) {
-    try {
-      separable(made.frame(), materials, {});
-    } catch (const Error& error) {
-      return static_cast<int>(error.code());
-    }
-    return 0;
-  };
-  MadeFrame made = three_pixels();
-  CHECK(code(made, {tiny_material()}) == 0);
-  CHECK(code(made, {}) == static_cast<int>(ErrorCode::usage));
-  CHECK(code(made, {tiny_material(1), tiny_material(2)}) == static_cast<int>(ErrorCode::usage));
-  Material follows = tiny_material();
-  follows.width_follows_albedo = true;
-  CHECK(code(made, {follows}) == static_cast<int>(ErrorCode::role_missing));
-  made.camera.projection = Camera::Projection::perspective;
-  CHECK(code(made, {tiny_material()}) == static_cast<int>(ErrorCode::role_missing));
-  made = three_pixels();
-  made.light.clear();
-  CHECK(code(made, {tiny_material()}) == static_cast<int>(ErrorCode::role_missing));
-  made = three_pixels();
-  made.width = 0;
-  CHECK(code(made, {tiny_material()}) == static_cast<int>(ErrorCode::usage));
 }
 
 }  // namespace dermis::oracle

@@ -76,12 +76,21 @@ TEST_CASE("values outside their ranges are usage errors that name argument, valu
     std::string value;
     std::string wanted;
   };
-  const std::vector<Case> cases = {{"--taps", "4", "odd number from 3 to 127"},
-                                   {"--taps", "x", "odd number from 3 to 127"},
-                                   {"--taps", "", "odd number from 3 to 127"},
+  const std::vector<Case> cases = {{"--taps", "4", "odd number from 3 to 2047 or dense"},
+                                   {"--taps", "2049", "odd number from 3 to 2047 or dense"},
+                                   {"--taps", "x", "odd number from 3 to 2047 or dense"},
+                                   {"--taps", "", "odd number from 3 to 2047 or dense"},
                                    {"--jitter", "2", "0 to 1"},
                                    {"--seed", "4294967296", "4294967295"},
-                                   {"--rank", "2", "only rank"},
+                                   {"--rank", "0", "1 to 6"},
+                                   {"--rank", "7", "1 to 6"},
+                                   {"--model", "burley", "pre-integrated or artist"},
+                                   {"--placement", "random", "uniform or importance"},
+                                   {"--guide", "4.1", "0 to 4"},
+                                   {"--tolerance", "0", "between 0 and 1"},
+                                   {"--tolerance", "1", "between 0 and 1"},
+                                   {"--tolerance", "-0.1", "between 0 and 1"},
+                                   {"--tolerance", "nan", "between 0 and 1"},
                                    {"--method", "fast", "separable or exact"},
                                    {"--lighting", "dark", "raw or lit"},
                                    {"--albedo-mix", "-0.1", "0 to 1"},
@@ -95,6 +104,41 @@ TEST_CASE("values outside their ranges are usage errors that name argument, valu
     INFO(c.option << " " << c.value);
     call.check_refuses({c.option, c.value}, 2,
                        {c.option + ": got " + (c.value.empty() ? "nothing" : c.value), c.wanted});
+  }
+}
+
+TEST_CASE("a design that the model does not know is a usage error that names the option") {
+  const GoodCall call;
+  struct Case {
+    Words words;
+    Words parts;
+  };
+  const std::vector<Case> cases = {
+      {{"--model", "optimised", "--rank", "4"}, {"--rank: got 4", "1..3"}},
+      {{"--model", "artist", "--rank", "2"}, {"--rank: got 2", "1 for this model"}},
+      {{"--model", "guided", "--rank", "3"}, {"--rank: got 3", "1 for this model"}},
+      {{"--model", "pre-integrated", "--rank", "2"}, {"--rank: got 2", "1 for this model"}},
+      {{"--model", "svd", "--guide", "1"}, {"--guide: got 1 for --model svd", "--model guided"}},
+      {{"--model", "optimised", "--rank", "1", "--non-negative"}, {"--non-negative: got", "--rank 1", "--rank 2 or 3"}},
+      {{"--model", "svd", "--rank", "2", "--non-negative"}, {"--non-negative: got --model svd", "--model optimised"}}};
+  for (const Case& c : cases) {
+    INFO(c.parts.front());
+    call.check_refuses(c.words, 2, c.parts);
+  }
+}
+
+TEST_CASE("a tolerance leaves no design to be asked for") {
+  const GoodCall call;
+  const std::vector<Words> designs = {{"--model", "artist"},         {"--rank", "2"},  {"--taps", "9"},
+                                      {"--placement", "importance"}, {"--guide", "1"}, {"--non-negative"},
+                                      {"--method", "exact"}};
+  for (const Words& design : designs) {
+    Words before = design;
+    before.insert(before.end(), {"--tolerance", "0.05"});
+    call.check_refuses(before, 2, {design.front(), "--tolerance"});
+    Words after = {"--tolerance", "0.05"};
+    after.insert(after.end(), design.begin(), design.end());
+    call.check_refuses(after, 2, {design.front(), "--tolerance"});
   }
 }
 
@@ -114,6 +158,17 @@ TEST_CASE("no output takes the place of another one or of the input") {
   call.check_refuses({"--preview", picture, "--stats-json", call.folder() / "./p.png"}, 2, {"not --preview as well"});
   CHECK(read_file(call.input()) == before);
   CHECK_FALSE(fs::exists(picture));
+
+  // two names of a file that is not there yet, in the folder that the program runs in
+  const std::string there = "cd '" + call.folder().path().string() + "' &&";
+  const auto check = [&](const std::string& output, const std::string& stats) {
+    Words arguments = call.with({"-o", output, "--stats-json", stats}, "-o");
+    check_refused(run_program(arguments, there), 2, {"--stats-json: got " + stats, "not --output as well"});
+  };
+  check("new.exr", "./new.exr");
+  check("./new.exr", "new.exr");
+  check("new.exr", call.folder() / "new.exr");
+  CHECK_FALSE(fs::exists(call.folder() / "new.exr"));
 }
 
 TEST_CASE("options that contradict each other are usage errors") {

@@ -40,10 +40,11 @@ TEST_CASE("help and version are no errors") {
     CHECK(has(help, command));
   const std::string filter = run_well({"filter", "--help"});
   for (const char* option :
-       {"--material", "--profile",          "--method", "--rank",     "--taps",        "--jitter",      "--seed",
-        "--lighting", "--albedo-mix",       "--fov",    "--focal-px", "--px-per-unit", "--mm-per-unit", "--role",
-        "--layer",    "--compression",      "--device", "--threads",  "--stats",       "--stats-json",  "--preview",
-        "--output",   "gaussians:FILE.json"}) {
+       {"--model",      "--rank",       "--taps",        "--placement",        "--guide",       "--non-negative",
+        "--tolerance",  "--material",   "--profile",     "--method",           "--jitter",      "--seed",
+        "--lighting",   "--albedo-mix", "--fov",         "--focal-px",         "--px-per-unit", "--mm-per-unit",
+        "--role",       "--layer",      "--compression", "--device",           "--threads",     "--stats",
+        "--stats-json", "--preview",    "--output",      "gaussians:FILE.json"}) {
     INFO(option);
     CHECK(has(filter, option));
   }

@@ -10,7 +10,7 @@ struct Outcome {
   std::string errors;  // stderr
 };
 
-/// Runs `dermis` with these arguments. `environment` is put before the command, as "NAME=value".
+/// Runs `dermis` with these arguments. `environment` is put before the command, as "NAME=value" or "cd 'folder' &&".
 Outcome run_program(const std::vector<std::string>& arguments, const std::string& environment = {});
 
 /// Runs it and requires exit code 0; returns stdout.

@@ -30,8 +30,10 @@ struct Reference {
   Picture touched;  ///< 1 channel: 1 where the filter scattered, 0 where it must leave the pixel alone
 };
 
-/// The same taps, summed pixel by pixel. Reads the frame's host images. Output formats are float32 for the bounds:
-/// a caller that stores half adds half an ulp of that.
+/// The same taps, summed pixel by pixel; see Taps. Where a pass has no taps for a pixel (rung -1, or a pixel that gives
+/// light but takes none) each term is its sum at one point: 1 times what it reads if normalised, else Term::sum times
+/// it; but the second pass returns pixels that take none as they were. Reads the frame's host images. Output formats
+/// are float32 for the bounds: a caller that stores half adds half an ulp of that.
 Reference separable(const Frame& frame, std::span<const Material> materials, const Options& options);
 
 /// The surface integral over all visible pixels of the material,

@@ -1,0 +1,141 @@
+#include "design_arguments.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+#include <utility>
+
+#include "number_argument.hpp"
+#include "word_argument.hpp"
+
+namespace dermis::program {
+namespace {
+
+constexpr int most_taps = 2047;
+
+bool is_number_of_taps(std::int64_t taps) { return taps >= 3 && taps <= most_taps && taps % 2 == 1; }
+
+CLI::Validator taps_or_dense() {
+  return {[](const std::string& text) {
+            const auto taps = parse_whole(text);
+            const bool good = text == "dense" || (taps && is_number_of_taps(*taps));
+            return good ? std::string{} : refusal(text, fmt::format("an odd number from 3 to {} or dense", most_taps));
+          },
+          ""};
+}
+
+template <typename Value>
+using Named = std::pair<std::string_view, Value>;
+
+constexpr std::array<Named<Model>, 6> models = {{{"pre-integrated", Model::pre_integrated},
+                                                 {"artist", Model::artist},
+                                                 {"guided", Model::guided},
+                                                 {"svd", Model::svd},
+                                                 {"gaussians", Model::gaussians},
+                                                 {"optimised", Model::optimised}}};
+
+constexpr std::array<Named<Placement>, 4> placements = {{{"uniform", Placement::uniform},
+                                                         {"importance", Placement::importance},
+                                                         {"quadratic", Placement::quadratic},
+                                                         {"optimised", Placement::optimised}}};
+
+/// The name is one of them: the option checks that.
+template <typename Value, std::size_t count>
+Value value_of(const std::array<Named<Value>, count>& names, std::string_view name) {
+  for (const auto& [known, value] : names)
+    if (known == name) return value;
+  return names.front().second;
+}
+
+template <typename Value, std::size_t count>
+std::string_view name_in(const std::array<Named<Value>, count>& names, Value value) {
+  for (const auto& [name, known] : names)
+    if (known == value) return name;
+  return {};
+}
+
+/// True if a rank above 1 can be meant.
+bool has_ranks(Model model) { return model == Model::svd || model == Model::gaussians || model == Model::optimised; }
+
+}  // namespace
+
+std::string_view name_of(Model model) { return name_in(models, model); }
+std::string_view name_of(Placement placement) { return name_in(placements, placement); }
+
+std::string command_text(const TapsDesign& design) {
+  std::string text = fmt::format(" --model {} --rank {} --taps {} --placement {}", name_of(design.model), design.rank,
+                                 design.count, name_of(design.placement));
+  if (design.model == Model::guided) text += fmt::format(" --guide {}", design.guide);
+  if (design.non_negative) text += " --non-negative";
+  return text;
+}
+
+void add_design_arguments(CLI::App& app, DesignArguments& arguments) {
+  app.add_option("--model", arguments.model,
+                 "the products of one-dimensional functions that stand for the profile: pre-integrated, artist or "
+                 "guided (Jimenez et al. 2015), svd, gaussians, or optimised for natural images")
+      ->check(one_of({"pre-integrated", "artist", "guided", "svd", "gaussians", "optimised"}))
+      ->capture_default_str();
+  app.add_option("--rank", arguments.rank,
+                 "how many products: 1..6 for svd and gaussians, 1..3 for optimised, 1 for the others")
+      ->check(whole_number([](std::int64_t rank) { return rank >= 1 && rank <= 6; },
+                           "a whole number from 1 to 6, as the model allows"))
+      ->default_str(std::to_string(arguments.defaults.rank));
+  app.add_option("--taps", arguments.taps, "taps per pass, odd; dense: one on every pixel")
+      ->check(taps_or_dense())
+      ->type_name("N|dense")
+      ->capture_default_str();
+  app.add_option("--placement", arguments.placement,
+                 "where taps lie: uniform, importance (the same light each), quadratic or optimised")
+      ->check(one_of({"uniform", "importance", "quadratic", "optimised"}))
+      ->capture_default_str();
+  app.add_option(
+         "--guide", arguments.guide,
+         fmt::format("--model guided: from 0, sharper, to 4, smoother; {} if not given", arguments.defaults.guide))
+      ->check(real_number([](double guide) { return guide >= 0 && guide <= 4; }, "a number from 0 to 4"));
+  app.add_flag("--non-negative", arguments.non_negative,
+               "--model optimised, --rank 2 or 3: keep the approximated profile above zero, for a little error");
+}
+
+TapsDesign design_of(const DesignArguments& arguments) {
+  const Model model = value_of(models, arguments.model);
+  TapsDesign design{.model = model,
+                    .rank = arguments.rank.value_or(has_ranks(model) ? arguments.defaults.rank : 1),
+                    .count = most_taps,
+                    .placement = value_of(placements, arguments.placement),
+                    .non_negative = arguments.non_negative,
+                    .guide = arguments.defaults.guide};
+  if (arguments.taps != "dense") design.count = static_cast<int>(*parse_whole(arguments.taps));
+  if (arguments.guide) {
+    if (design.model != Model::guided)
+      throw Error(ErrorCode::usage, "--guide", fmt::format("{} for --model {}", *arguments.guide, arguments.model),
+                  "--model guided with it");
+    design.guide = *arguments.guide;
+  }
+  if (design.non_negative && (design.model != Model::optimised || design.rank == 1))
+    throw Error(ErrorCode::usage, "--non-negative", fmt::format("--model {}, --rank {}", arguments.model, design.rank),
+                "--model optimised and --rank 2 or 3 with it");
+  return design;
+}
+
+Error named_as_option(const Error& error) {
+  constexpr std::string_view before_seen = ": got ";
+  constexpr std::string_view before_wanted = ", want ";
+  const std::string_view line = error.what();
+  const std::size_t seen = line.find(before_seen);
+  const std::size_t wanted = line.rfind(before_wanted);
+  if (seen == std::string_view::npos || wanted == std::string_view::npos || wanted < seen) return error;
+  const std::string_view argument = line.substr(0, seen);
+  constexpr std::array<std::string_view, 5> arguments = {"rank", "taps", "guide", "pixel_mm", "tolerance"};
+  if (std::find(arguments.begin(), arguments.end(), argument) == arguments.end()) return error;
+  std::string option = "--" + std::string(argument);
+  std::replace(option.begin(), option.end(), '_', '-');
+  const std::size_t seen_at = seen + before_seen.size();
+  return {error.code(), option, line.substr(seen_at, wanted - seen_at), line.substr(wanted + before_wanted.size())};
+}
+
+}  // namespace dermis::program

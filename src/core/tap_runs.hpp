@@ -1,0 +1,35 @@
+// Placements that do not depend on weights: each tap stands for a run of whole pixels.
+#pragma once
+
+#include <vector>
+
+#include "dermis/taps.hpp"
+
+namespace dermis {
+
+/// A run of whole pixels on one side of the centre, in pixel units: from first_px - 1/2 to last_px + 1/2.
+struct TapRun {
+  int first_px;
+  int last_px;
+
+  double begin_px() const { return first_px - 0.5; }
+  double end_px() const { return last_px + 0.5; }
+};
+
+/// The pixels of one side.
+struct TapRuns {
+  int core_px = 0;  ///< pixels next to the centre that the centre tap stands for
+  std::vector<TapRun> runs;
+};
+
+/// One run per pixel up to last_px.
+TapRuns every_pixel(int last_px);
+
+/// At most `pairs` runs up to last_px, for pixels of the size. What is `optimised` starts as `importance`.
+TapRuns make_runs(const Profile& profile, Placement placement, double footprint, int last_px, int pairs);
+
+/// Where in their runs the taps sit: at the centres of the light of the widest channel; for whole pixels at that of the
+/// two beside it that keeps the second moment of the kernel, what earlier runs owe carried along.
+std::vector<double> offsets_in(const Profile& profile, const TapRuns& runs, double footprint, Fetch fetch);
+
+}  // namespace dermis

@@ -1,0 +1,42 @@
+// Pictures with the statistics of natural images, and what the exact convolution with a profile makes of them.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "dermis/profile.hpp"
+#include "dermis/taps.hpp"
+
+/// The mean power spectrum of some random pictures, side_px a side, that repeat at their edges: exponentials of noise
+/// whose amplitude falls as 1 / frequency, with a standard deviation of half their mean. Only the quadrant of
+/// non-negative frequencies; a kernel that is even in x and y does not tell the others apart.
+class NaturalPictures {
+ public:
+  NaturalPictures(int side_px, int count, std::uint32_t seed);
+
+  int side_px() const { return side_px_; }
+  /// Rows and columns 0..side/2; all that a frequency and its mirror images hold.
+  const std::vector<double>& power() const { return power_; }
+
+ private:
+  int side_px_;
+  std::vector<double> power_;
+};
+
+/// One such picture.
+std::vector<double> natural_picture(int side_px, std::uint32_t seed);
+
+/// The profile on pixels of one size, in every channel, as its spectrum; what lies beyond half the side is cut off and
+/// made up for by all that is left.
+class ExactKernel {
+ public:
+  ExactKernel(const dermis::Profile& profile, double pixel_mm, int side_px);
+
+  /// The relative L2 distance, all channels together, of the taps' result from the exact one.
+  double rel_l2(const dermis::TapSet& taps, const NaturalPictures& pictures) const;
+
+ private:
+  int side_px_;
+  std::array<std::vector<double>, 3> spectrum_;  ///< the quadrant 0..side/2
+};

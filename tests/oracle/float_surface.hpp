@@ -1,0 +1,110 @@
+// The pixels of a frame as a float32 device might see them. For the oracle's bounds.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <span>
+#include <vector>
+
+#include "dermis/oracle/reference.hpp"
+#include "made_frame.hpp"
+
+struct FloatPixel {
+  int material = -1;
+  bool touched = false;
+  std::array<float, 3> position{};
+  std::array<float, 2> footprint{};
+  std::array<float, 2> segment{};
+  std::array<float, 3> k{};
+  float spread = 0;
+  std::array<float, 3> x{};
+};
+
+class FloatSurface {
+ public:
+  FloatSurface(const MadeFrame& made, std::span<const dermis::oracle::Material> materials,
+               const dermis::Options& options)
+      : pixels(made.pixels()), made_(made), materials_(materials), options_(options) {
+    for (std::size_t i = 0; i < pixels.size(); ++i) prepare(i);
+    for (std::size_t i = 0; i < pixels.size(); ++i) measure_segments(i);
+  }
+
+  std::vector<FloatPixel> pixels;
+
+ private:
+  float albedo(std::size_t i) const { return made_.albedo.empty() ? 1 : made_.albedo[i]; }
+  bool raw() const { return options_.lighting == dermis::Lighting::raw; }
+  float mix() const { return static_cast<float>(options_.albedo_mix); }
+
+  void prepare(std::size_t i) {
+    FloatPixel& pixel = pixels[i];
+    for (std::size_t c = 0; c < 3; ++c) {
+      const float rho = albedo(3 * i + c);
+      const float light = made_.light[3 * i + c];
+      pixel.x[c] = raw() ? light : (rho >= 1e-4F ? light / rho : 0);
+      if (mix() > 0) pixel.x[c] *= std::pow(std::fmax(rho, 0.0F), mix());
+    }
+    if (made_.material.empty()) {
+      pixel.material = 0;
+    } else {
+      for (std::size_t m = 0; m < materials_.size(); ++m) {
+        if (made_.material[i] == static_cast<float>(materials_[m].id)) pixel.material = static_cast<int>(m);
+      }
+    }
+    if (pixel.material < 0) return;
+    const dermis::oracle::Material& material = materials_[pixel.material];
+    const auto sx = static_cast<float>(made_.camera.scale_x);
+    const auto sy = static_cast<float>(made_.camera.scale_y);
+    const auto mm = static_cast<float>(made_.mm_per_unit);
+    const float z = made_.depth.empty() ? 0 : made_.depth[i] * mm;
+    const float per_px = made_.camera.projection == dermis::Camera::Projection::perspective ? z : mm;
+    const int column = static_cast<int>(i) % made_.width;
+    const int row = static_cast<int>(i) / made_.width;
+    pixel.footprint = {sx / per_px, sy / per_px};
+    pixel.position = {(static_cast<float>(column) + 0.5F - static_cast<float>(made_.camera.center_x)) * per_px / sx,
+                      (static_cast<float>(row) + 0.5F - static_cast<float>(made_.camera.center_y)) * per_px / sy, z};
+    for (std::size_t c = 0; c < 3; ++c) {
+      pixel.k[c] = made_.mask.empty() ? 1 : std::fmin(made_.mask[i], 1.0F);
+      if (material.width_follows_albedo) {
+        const float a = std::fmin(std::fmax(albedo(3 * i + c), 0.0F), 1.0F);
+        pixel.k[c] /= 1.9F - a + 3.5F * (a - 0.8F) * (a - 0.8F);
+      }
+      pixel.spread = std::fmax(pixel.spread, pixel.k[c] * material.taps.relative_width[c]);
+    }
+    const float radius = static_cast<float>(material.taps.radius_mm);
+    pixel.touched = std::fmax(pixel.footprint[0], pixel.footprint[1]) * pixel.spread * radius >= 0.5F;
+  }
+
+  void measure_segments(std::size_t i) {
+    FloatPixel& pixel = pixels[i];
+    if (pixel.material < 0) return;
+    const int place[2] = {static_cast<int>(i) % made_.width, static_cast<int>(i) / made_.width};
+    const int size[2] = {made_.width, made_.height};
+    const int step[2] = {1, made_.width};
+    const bool perspective = made_.camera.projection == dermis::Camera::Projection::perspective;
+    for (int axis = 0; axis < 2; ++axis) {
+      const auto difference = [&](int sign) -> float {
+        const int to = place[axis] + sign;
+        if (to < 0 || to >= size[axis]) return NAN;
+        const FloatPixel& other = pixels[static_cast<int>(i) + sign * step[axis]];
+        return other.material == pixel.material ? static_cast<float>(sign) * (other.position[2] - pixel.position[2])
+                                                : NAN;
+      };
+      const float forward = difference(1);
+      const float backward = difference(-1);
+      float slope = std::fabs(forward) < std::fabs(backward) || std::isnan(backward) ? forward : backward;
+      if (std::isnan(slope) || forward * backward <= 0) slope = 0;
+      float sum = slope * slope;
+      for (int j = 0; j < 2; ++j) {
+        const float ray = perspective ? pixel.position[j] / pixel.position[2] : 0;
+        const float change = ray * slope + (j == axis ? 1 / pixel.footprint[j] : 0);
+        sum += change * change;
+      }
+      pixel.segment[axis] = std::sqrt(sum);
+    }
+  }
+
+  const MadeFrame& made_;
+  std::span<const dermis::oracle::Material> materials_;
+  const dermis::Options& options_;
+};
