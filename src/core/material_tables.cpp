@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <future>
 
-#include "core/radial_table.hpp"
+#include "taps/radial_table.hpp"
 
 namespace dermis {
 

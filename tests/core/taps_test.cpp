@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "catch.hpp"
-#include "core/radial_table.hpp"
 #include "dermis/error.hpp"
 #include "random.hpp"
+#include "taps/radial_table.hpp"
 
 using dermis::make_taps;
 using dermis::Model;

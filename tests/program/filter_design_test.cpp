@@ -17,7 +17,6 @@
 #include "dermis/profile.hpp"
 #include "dermis/taps.hpp"
 #include "made_picture.hpp"
-#include "random.hpp"
 #include "run_program.hpp"
 #include "temporary_folder.hpp"
 
@@ -154,7 +153,7 @@ TEST_CASE("every model of every rank spreads light, and leaves constant light as
     CHECK(stats["materials"][0]["design"]["rank"] == c.rank);
     CHECK(stats["materials"][0]["design"]["taps"] == 13);
     const std::string output = folder / (name + ".exr");
-WARN(distance(output, "ViewLayer.sss.", folder / "exact.exr", "ViewLayer.sss.")/unfiltered <<" "<< change_of_constant(output));
+    // What spreads nothing is at 1 of it; the worst of these, 13 uniform taps, at 0.43.
     CHECK(distance(output, "ViewLayer.sss.", folder / "exact.exr", "ViewLayer.sss.") < 0.5 * unfiltered);
     // A pass sums 13 weights and 13 products and divides: (2 * 13 + 1) 2^-24 of the light. There are two, of up to
     // 6 terms whose scales sum to 1; where they change their sign, their absolute values sum to less than 4.
@@ -215,7 +214,7 @@ TEST_CASE("a tolerance takes the cheapest design for each material") {
     CHECK(std::is_sorted(of_material.begin(), of_material.end()));
     CHECK(of_material.front() < of_material.back());
   }
-  // Burley's profile decays as slowly as the skin is smooth: it takes more.
+  // The wider profile with the sharper peak takes more.
   CHECK(reads[0].back() < reads[1].back());
 }
 

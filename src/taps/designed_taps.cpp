@@ -1,0 +1,213 @@
+#include "taps/designed_taps.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "dermis/error.hpp"
+#include "taps/gaussian_mixture.hpp"
+
+namespace dermis {
+
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// What a design may ask for of a model.
+int highest_rank(Model model) {
+  switch (model) {
+    case Model::svd:
+    case Model::gaussians:
+      return 6;
+    case Model::optimised:
+      return 3;
+    case Model::pre_integrated:
+    case Model::artist:
+    case Model::guided:
+      break;
+  }
+  return 1;
+}
+
+/// How much of the light of the widest channel lies within the radius. More terms are worth more of it.
+double share_within_radius(const TapsDesign& design) {
+  return design.rank == 1 ? 0.999 : design.rank == 2 ? 0.9999 : 0.99999;
+}
+
+std::shared_ptr<const PowerGrid> grid_of(int period_px) {
+  thread_local std::map<int, std::shared_ptr<const PowerGrid>> grids;
+  auto& grid = grids[period_px];
+  if (!grid) grid = std::make_shared<PowerGrid>(period_px);
+  return grid;
+}
+
+/// A period that keeps products of two rows of taps apart.
+int period_for(int last_px) {
+  int period = 256;
+  while (period < 4 * last_px + 4) period *= 2;
+  return period;
+}
+
+/// Offsets near the given ones that are whole if they have to be, at least a pixel apart and not beyond last_px.
+std::vector<double> valid_offsets(std::vector<double> offsets_px, int last_px, Fetch fetch) {
+  const auto count = static_cast<int>(offsets_px.size());
+  for (int i = 0; i < count; ++i) {
+    double& offset_px = offsets_px[i];
+    if (fetch == Fetch::integer) offset_px = std::round(offset_px);
+    offset_px = std::max(offset_px, i == 0 ? 1 : offsets_px[i - 1] + 1);
+  }
+  for (int i = count - 1; i >= 0; --i) {
+    offsets_px[i] = std::min(offsets_px[i], static_cast<double>(last_px - (count - 1 - i)));
+  }
+  return offsets_px;
+}
+
+}  // namespace
+
+void check_design(const TapsDesign& design) {
+  constexpr int most_taps = 2047;
+  const int ranks = highest_rank(design.model);
+  if (design.rank < 1 || design.rank > ranks) {
+    throw Error(ErrorCode::usage, "rank", std::to_string(design.rank),
+                ranks == 1 ? "1 for this model" : "1.." + std::to_string(ranks) + " for this model");
+  }
+  if (design.count < 3 || design.count > most_taps || design.count % 2 == 0) {
+    throw Error(ErrorCode::usage, "taps", std::to_string(design.count), "an odd number, 3..2047");
+  }
+  if (!(design.guide >= 0 && design.guide <= 4)) {
+    throw Error(ErrorCode::usage, "guide", std::to_string(design.guide), "0..4");
+  }
+}
+
+DesignedTaps::DesignedTaps(const Profile& profile, const TapsDesign& design)
+    : profile_(profile), design_(design), model_(make_model(profile, design)) {
+  for (int c = 0; c < 3; ++c) {
+    mixtures_[c] = mixture_of(profile, c);
+    radius_mm_ = std::max(radius_mm_, radius_mm(c));
+  }
+}
+
+double DesignedTaps::radius_mm(int channel) const { return profile_.half_width(channel, share_within_radius(design_)); }
+
+std::array<MatrixXd, 3> DesignedTaps::run_weights(const TapRuns& runs, double pixel_mm) const {
+  std::array<MatrixXd, 3> weights;
+  for (int c = 0; c < 3; ++c) {
+    weights[c].resize(static_cast<Index>(runs.runs.size()) + 1, static_cast<Index>(model_.size()));
+    for (std::size_t t = 0; t < model_.size(); ++t) {
+      const TermFunction& f = model_[t].functions[c];
+      double outside = 0;
+      for (std::size_t i = 0; i < runs.runs.size(); ++i) {
+        const TapRun& run = runs.runs[i];
+        // The last run also takes what lies beyond the radius.
+        const double beyond = i + 1 == runs.runs.size() ? 0 : tail_of(profile_, c, f, run.end_px() * pixel_mm);
+        double light = tail_of(profile_, c, f, run.begin_px() * pixel_mm) - beyond;
+        if (model_[t].normalised) light = std::max(light, 0.0);
+        weights[c](static_cast<Index>(i) + 1, static_cast<Index>(t)) = light;
+        outside += 2 * light;
+      }
+      weights[c](0, static_cast<Index>(t)) = f.sum() - outside;
+    }
+  }
+  return weights;
+}
+
+std::array<ChannelOnPixels, 3> DesignedTaps::on_pixels(double pixel_mm, int last_px) const {
+  const auto grid = grid_of(period_for(last_px));
+  return {ChannelOnPixels(grid, mixtures_[0], model_, 0, pixel_mm),
+          ChannelOnPixels(grid, mixtures_[1], model_, 1, pixel_mm),
+          ChannelOnPixels(grid, mixtures_[2], model_, 2, pixel_mm)};
+}
+
+double DesignedTaps::predicted_rel_l2(const PlacedTaps& placed, double pixel_mm) const {
+  // Taps further apart than the longest period are compared on larger pixels.
+  constexpr int farthest_px = 4000;
+  constexpr int least_reach_px = 127;  // makes the period that of the images
+  PlacedTaps taps = placed;
+  while (!taps.offsets_px.empty() && taps.offsets_px.back() > farthest_px) {
+    for (double& offset_px : taps.offsets_px) offset_px /= 2;
+    pixel_mm *= 2;
+  }
+  const int last_px = taps.offsets_px.empty() ? 1 : static_cast<int>(std::ceil(taps.offsets_px.back()));
+  const auto channels = on_pixels(pixel_mm, std::max(last_px, least_reach_px));
+  std::array<double, 3> errors{};
+  std::array<double, 3> truths{};
+  for (int c = 0; c < 3; ++c) {
+    errors[c] = channels[c].squared_error(responses_of(taps, c, channels[c].grid()));
+    truths[c] = channels[c].truth_power();
+  }
+  return relative_l2(errors, truths);
+}
+
+SizedTaps DesignedTaps::at(double pixel_mm, Fetch fetch, const std::vector<double>& near_px) const {
+  const double footprint = 1 / pixel_mm;
+  const double exact_last_px = std::ceil(radius_mm_ * footprint - 0.5);
+  const int pairs = design_.count / 2;
+  // Pixels of the widest kernels are small against everything: they have the taps of kernels half as wide, spread out.
+  const int widest_px = pairs <= most_fitted_pairs ? 1024 : 32768;
+  if (exact_last_px > widest_px) {
+    const int doublings = static_cast<int>(std::ceil(std::log2(exact_last_px / widest_px)));
+    std::vector<double> near = near_px;
+    for (double& offset_px : near) offset_px = std::ldexp(offset_px, -doublings);
+    SizedTaps taps = at(std::ldexp(pixel_mm, doublings), fetch, near);
+    for (double& offset_px : taps.placed.offsets_px) offset_px = std::ldexp(offset_px, doublings);
+    taps.core_half_width_px = std::ldexp(taps.core_half_width_px, doublings);
+    return taps;
+  }
+  const int last_px = std::max(1, static_cast<int>(exact_last_px));
+  const bool dense = last_px <= pairs;
+  if (!dense && design_.placement == Placement::optimised && pairs <= most_fitted_pairs) {
+    return fitted(pixel_mm, last_px, fetch, near_px);
+  }
+  const TapRuns runs = dense ? every_pixel(last_px) : make_runs(profile_, design_.placement, footprint, last_px, pairs);
+  SizedTaps taps;
+  taps.placed.offsets_px = offsets_in(profile_, runs, footprint, dense ? Fetch::integer : fetch);
+  taps.placed.weights = run_weights(runs, pixel_mm);
+  taps.core_half_width_px = runs.core_px + 0.5;
+  return taps;
+}
+
+SizedTaps DesignedTaps::fitted(double pixel_mm, int last_px, Fetch fetch, const std::vector<double>& near_px) const {
+  // Few taps are better spent nearer than where the last thousandths of the light are.
+  constexpr double share_worth_a_tap = 0.998;
+  const int farthest_px =
+      static_cast<int>(std::ceil(profile_.half_width(profile_.widest_channel(), share_worth_a_tap) / pixel_mm - 0.5));
+  last_px = std::max({1, design_.count / 2, std::min(last_px, farthest_px)});
+  if (!near_px.empty()) {
+    // The farthest tap is not far from where it was.
+    const int near_last_px = static_cast<int>(near_px.back() * 1.25) + 2;
+    last_px = std::clamp(near_last_px, design_.count / 2, last_px);
+  }
+  const auto channels = on_pixels(pixel_mm, last_px);
+  std::vector<double> start_px = near_px;
+  if (start_px.empty()) {
+    const TapRuns runs = make_runs(profile_, Placement::importance, 1 / pixel_mm, last_px, design_.count / 2);
+    start_px = offsets_in(profile_, runs, 1 / pixel_mm, fetch);
+  }
+  start_px = valid_offsets(std::move(start_px), last_px, fetch);
+  std::vector<bool> non_negative;
+  for (const ModelTerm& term : model_) non_negative.push_back(term.normalised);
+  std::array<VectorXd, 3> sums;
+  for (int c = 0; c < 3; ++c) {
+    sums[c].resize(static_cast<Index>(model_.size()));
+    for (std::size_t t = 0; t < model_.size(); ++t) sums[c][static_cast<Index>(t)] = model_[t].functions[c].sum();
+  }
+  SizedTaps taps;
+  taps.placed = fit_taps(channels, start_px, !near_px.empty(), last_px, fetch, design_.model == Model::optimised,
+                         non_negative, sums);
+  taps.core_half_width_px = core_half_width_px(taps.placed, pixel_mm);
+  return taps;
+}
+
+/// The strip that holds as much of the widest channel as the centre tap weighs, at least a pixel.
+double DesignedTaps::core_half_width_px(const PlacedTaps& placed, double pixel_mm) const {
+  const int widest = profile_.widest_channel();
+  const double light = std::clamp(placed.weights[widest](0, 0), 0.0, 0.99);
+  const double half_width = profile_.half_width(widest, light) / pixel_mm;
+  const double farthest = placed.offsets_px.empty() ? 0.5 : placed.offsets_px.front() - 0.5;
+  return std::max(0.5, std::min(half_width, farthest));
+}
+
+}  // namespace dermis

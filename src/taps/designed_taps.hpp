@@ -1,0 +1,54 @@
+// A design carried out: its model once, its taps for any size of pixel.
+#pragma once
+
+#include <array>
+#include <map>
+#include <memory>
+#include <vector>
+
+#include "dermis/taps.hpp"
+#include "taps/expected_error.hpp"
+#include "taps/tap_fit.hpp"
+#include "taps/tap_runs.hpp"
+
+namespace dermis {
+
+/// Throws Error(usage) that names what is out of range.
+void check_design(const TapsDesign& design);
+
+/// Taps for one size of pixel.
+struct SizedTaps {
+  PlacedTaps placed;
+  double core_half_width_px = 0.5;  ///< the centre stands for |x| < this
+};
+
+class DesignedTaps {
+ public:
+  /// The design is in range.
+  DesignedTaps(const Profile& profile, const TapsDesign& design);
+
+  /// `near` are offsets to start the search from, of taps for about that size; none if empty.
+  SizedTaps at(double pixel_mm, Fetch fetch, const std::vector<double>& near_px = {}) const;
+
+  /// The error to expect of taps that were placed for this size, over natural images.
+  double predicted_rel_l2(const PlacedTaps& placed, double pixel_mm) const;
+
+  const std::vector<ModelTerm>& model() const { return model_; }
+  double radius_mm() const { return radius_mm_; }
+  /// The radius of one channel's own marginal.
+  double radius_mm(int channel) const;
+
+ private:
+  std::array<Eigen::MatrixXd, 3> run_weights(const TapRuns& runs, double pixel_mm) const;
+  SizedTaps fitted(double pixel_mm, int last_px, Fetch fetch, const std::vector<double>& near_px) const;
+  double core_half_width_px(const PlacedTaps& placed, double pixel_mm) const;
+  std::array<ChannelOnPixels, 3> on_pixels(double pixel_mm, int last_px) const;
+
+  Profile profile_;
+  TapsDesign design_;
+  std::vector<ModelTerm> model_;
+  std::array<std::vector<Gaussian>, 3> mixtures_;
+  double radius_mm_ = 0;
+};
+
+}  // namespace dermis

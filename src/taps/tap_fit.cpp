@@ -1,0 +1,288 @@
+#include "taps/tap_fit.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+namespace dermis {
+
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// A tap between two pixels is so much of each.
+struct PixelShare {
+  int offset_px;
+  double share;
+};
+
+std::array<PixelShare, 2> pixels_of(double offset_px) {
+  const int below = static_cast<int>(offset_px);
+  const double fraction = offset_px - below;
+  return {{{below, 1 - fraction}, {below + 1, fraction}}};
+}
+
+/// The squared error of one channel as a quadratic form in the weights of pairs. The centre takes what is left of the
+/// sum, so that a pair of weight w adds w (2 cos(u o) - 2) to the response.
+class QuadraticForm {
+ public:
+  QuadraticForm(const ChannelOnPixels& channel, const Responses& beta, const VectorXd& sums, bool joint);
+
+  /// The least value over the weights of pairs at these offsets, and the weights, a column per term.
+  double solve(const std::vector<double>& offsets_px, const std::vector<bool>& non_negative, MatrixXd* weights) const;
+
+ private:
+  double product(int block, double offset_a, double offset_b) const;
+  double target(int term, double offset_px) const;
+
+  int terms_;
+  bool joint_;
+  double constant_ = 0;
+  std::vector<VectorXd> quadratic_;  ///< moments over u, per pair of terms
+  std::vector<VectorXd> linear_;     ///< moments over u, per term
+};
+
+QuadraticForm::QuadraticForm(const ChannelOnPixels& channel, const Responses& beta, const VectorXd& sums, bool joint)
+    : terms_(channel.terms()), joint_(joint) {
+  const PowerGrid& grid = channel.grid();
+  const AxisError error = channel.axis_error(beta);
+  // The response of the centre alone, less the model's.
+  const MatrixXd rest = (-channel.model()).rowwise() + sums.transpose();
+  VectorXd constant = joint ? error.constant : VectorXd(VectorXd::Zero(grid.fine.size()));
+  for (int t = 0; t < terms_; ++t) {
+    VectorXd linear = joint ? VectorXd(error.linear.col(t)) : VectorXd(VectorXd::Zero(grid.fine.size()));
+    constant -= 2 * linear.cwiseProduct(rest.col(t));
+    for (int other = 0; other < terms_; ++other) {
+      if (!joint && other != t) continue;
+      const VectorXd& quadratic = error.quadratic[t * terms_ + other];
+      linear -= quadratic.cwiseProduct(rest.col(other));
+      constant += quadratic.cwiseProduct(rest.col(t)).cwiseProduct(rest.col(other));
+    }
+    linear_.push_back(grid.moments(linear));
+    for (int other = 0; other < terms_; ++other) {
+      quadratic_.push_back(joint || other == t ? grid.moments(error.quadratic[t * terms_ + other]) : VectorXd());
+    }
+  }
+  constant_ = constant.dot(grid.fine.weight);
+}
+
+double QuadraticForm::target(int term, double offset_px) const {
+  const VectorXd& moments = linear_[term];
+  double sum = 0;
+  for (const auto& [k, share] : pixels_of(offset_px)) {
+    if (share > 0) sum += share * 2 * (moments[k] - moments[0]);
+  }
+  return sum;
+}
+
+double QuadraticForm::product(int block, double offset_a, double offset_b) const {
+  const VectorXd& moments = quadratic_[block];
+  double sum = 0;
+  for (const auto& [k, share_k] : pixels_of(offset_a)) {
+    if (share_k == 0) continue;
+    for (const auto& [l, share_l] : pixels_of(offset_b)) {
+      if (share_l == 0) continue;
+      sum += share_k * share_l *
+             (2 * (moments[k + l] + moments[std::abs(k - l)]) - 4 * (moments[k] + moments[l] - moments[0]));
+    }
+  }
+  return sum;
+}
+
+double QuadraticForm::solve(const std::vector<double>& offsets_px, const std::vector<bool>& non_negative,
+                            MatrixXd* weights) const {
+  const auto pairs = static_cast<int>(offsets_px.size());
+  if (weights != nullptr) weights->setZero(pairs, terms_);
+  double value = constant_;
+  // All terms in one system, or one system each.
+  const int systems = joint_ ? 1 : terms_;
+  for (int system = 0; system < systems; ++system) {
+    const int first = joint_ ? 0 : system;
+    const int last = joint_ ? terms_ : system + 1;
+    const int size = (last - first) * pairs;
+    MatrixXd matrix(size, size);
+    VectorXd right(size);
+    for (int t = first; t < last; ++t) {
+      for (int i = 0; i < pairs; ++i) {
+        const int row = (t - first) * pairs + i;
+        right[row] = target(t, offsets_px[i]);
+        for (int other = first; other <= t; ++other) {
+          for (int j = 0; j < (other == t ? i + 1 : pairs); ++j) {
+            const int column = (other - first) * pairs + j;
+            matrix(row, column) = product(t * terms_ + other, offsets_px[i], offsets_px[j]);
+          }
+        }
+      }
+    }
+    // A term of no or little scale must not grow without bound.
+    constexpr double ridge = 1e-11;
+    matrix.diagonal().array() += ridge * matrix.diagonal().maxCoeff() + std::numeric_limits<double>::min();
+    VectorXd x = matrix.selfadjointView<Eigen::Lower>().llt().solve(right);
+    // Weights that come out negative where they must not be are held at 0, one after the other.
+    std::vector<bool> held(size, false);
+    for (bool again = true; again;) {
+      again = false;
+      int worst = -1;
+      for (int row = 0; row < size; ++row) {
+        if (non_negative[first + row / pairs] && !held[row] && x[row] < 0 && (worst < 0 || x[row] < x[worst])) {
+          worst = row;
+        }
+      }
+      if (worst >= 0) {
+        held[worst] = true;
+        matrix.row(worst).head(worst).setZero();
+        matrix.col(worst).tail(size - worst).setZero();
+        matrix(worst, worst) = 1;
+        right[worst] = 0;
+        x = matrix.selfadjointView<Eigen::Lower>().llt().solve(right);
+        again = true;
+      }
+    }
+    value -= right.dot(x);
+    if (weights != nullptr) {
+      for (int row = 0; row < size; ++row) (*weights)(row % pairs, first + row / pairs) = x[row];
+    }
+  }
+  return value;
+}
+
+using Forms = std::vector<QuadraticForm>;
+
+double least_error(const Forms& forms, const std::vector<double>& offsets_px, const std::vector<bool>& non_negative) {
+  double sum = 0;
+  for (const QuadraticForm& form : forms) sum += form.solve(offsets_px, non_negative, nullptr);
+  return sum;
+}
+
+/// Moves one tap after the other by a step as long as that helps, with ever smaller steps. Returns the error.
+double search(const Forms& forms, std::vector<double>& offsets_px, int farthest_px, double first_step_px,
+              double last_step_px, const std::vector<bool>& non_negative) {
+  constexpr double least_gap_px = 0.25;
+  constexpr double worthwhile = 1 - 1e-4;
+  const double gap_px = last_step_px >= 1 ? 1 : least_gap_px;
+  double error = least_error(forms, offsets_px, non_negative);
+  for (double step_px = first_step_px; step_px >= last_step_px; step_px /= 2) {
+    for (bool moved = true; moved;) {
+      moved = false;
+      for (std::size_t i = 0; i < offsets_px.size(); ++i) {
+        for (const double direction : {-1.0, 1.0}) {
+          const double before = offsets_px[i];
+          const double after = before + direction * step_px;
+          const double low = i == 0 ? gap_px : offsets_px[i - 1] + gap_px;
+          const double high = i + 1 < offsets_px.size() ? offsets_px[i + 1] - gap_px : farthest_px;
+          if (after < low || after > high) continue;
+          offsets_px[i] = after;
+          const double error_after = least_error(forms, offsets_px, non_negative);
+          if (error_after < error * worthwhile) {
+            error = error_after;
+            moved = true;
+            break;
+          }
+          offsets_px[i] = before;
+        }
+      }
+    }
+  }
+  return error;
+}
+
+/// The given offsets and others whose distances grow exponentially, the most promising first.
+std::vector<std::vector<double>> starts(const Forms& forms, const std::vector<double>& given_px, int farthest_px,
+                                        Fetch fetch, const std::vector<bool>& non_negative) {
+  std::vector<std::pair<double, std::vector<double>>> all = {{least_error(forms, given_px, non_negative), given_px}};
+  const auto pairs = static_cast<int>(given_px.size());
+  for (const double growth : {1.0, 2.0, 3.0, 4.0, 5.0}) {
+    for (double reach_px = farthest_px; reach_px > pairs && reach_px > 0.15 * farthest_px; reach_px *= 0.85) {
+      std::vector<double> offsets_px;
+      for (int i = 1; i <= pairs; ++i) {
+        double offset_px = reach_px * std::expm1(growth * i / pairs) / std::expm1(growth);
+        if (fetch == Fetch::integer) offset_px = std::round(offset_px);
+        offsets_px.push_back(std::max(offset_px, (offsets_px.empty() ? 0 : offsets_px.back()) + 1));
+      }
+      if (offsets_px.back() > farthest_px) continue;
+      all.emplace_back(least_error(forms, offsets_px, non_negative), std::move(offsets_px));
+    }
+  }
+  std::sort(all.begin(), all.end());
+  std::vector<std::vector<double>> result;
+  for (auto& [error, offsets_px] : all) result.push_back(std::move(offsets_px));
+  return result;
+}
+
+}  // namespace
+
+Responses responses_of(const PlacedTaps& taps, int channel, const PowerGrid& grid) {
+  const MatrixXd& weights = taps.weights[channel];
+  Responses responses(grid.fine.size(), weights.cols());
+  for (Index t = 0; t < weights.cols(); ++t) {
+    VectorXd row = VectorXd::Zero(grid.fine.size());
+    row[0] = weights(0, t);
+    for (std::size_t i = 0; i < taps.offsets_px.size(); ++i) {
+      for (const auto& [k, share] : pixels_of(taps.offsets_px[i])) {
+        // Both taps of a pair reach the centre pixel.
+        if (share > 0) row[k] += weights(static_cast<Index>(i) + 1, t) * share * (k == 0 ? 2 : 1);
+      }
+    }
+    responses.col(t) = grid.response(row);
+  }
+  return responses;
+}
+
+PlacedTaps fit_taps(const std::array<ChannelOnPixels, 3>& channels, std::vector<double> offsets_px, bool near,
+                    int farthest_px, Fetch fetch, bool joint, const std::vector<bool>& non_negative,
+                    const std::array<VectorXd, 3>& sums) {
+  PlacedTaps taps{std::move(offsets_px), {}};
+  std::array<Responses, 3> beta;
+  for (int c = 0; c < 3; ++c) beta[c] = channels[c].model();
+  const auto forms = [&] {
+    Forms result;
+    for (int c = 0; c < 3; ++c) result.emplace_back(channels[c], beta[c], sums[c], joint);
+    return result;
+  };
+  const auto weigh = [&](const Forms& its_forms, double share_of_new) {
+    for (int c = 0; c < 3; ++c) {
+      MatrixXd pairs;
+      its_forms[c].solve(taps.offsets_px, non_negative, &pairs);
+      MatrixXd all(pairs.rows() + 1, pairs.cols());
+      all.bottomRows(pairs.rows()) = pairs;
+      all.row(0) = sums[c].transpose() - 2 * pairs.colwise().sum();
+      taps.weights[c] = share_of_new == 1 ? all : MatrixXd(share_of_new * all + (1 - share_of_new) * taps.weights[c]);
+      beta[c] = responses_of(taps, c, channels[c].grid());
+    }
+  };
+  // The other axis first has the model's response, then that of the taps found so far.
+  const double last_step_px = fetch == Fetch::linear ? 1.0 / 32 : 1;
+  const Forms first_forms = forms();
+  std::vector<std::vector<double>> candidates = {taps.offsets_px};
+  if (!near) candidates = starts(first_forms, taps.offsets_px, farthest_px, fetch, non_negative);
+  constexpr std::size_t most_candidates = 10;
+  candidates.resize(std::min(candidates.size(), most_candidates));
+  const double first_step_px = std::max(1.0, std::exp2(std::floor(std::log2(candidates[0].back() / 16))));
+  double least = HUGE_VAL;
+  for (std::vector<double>& offsets : candidates) {
+    const double error = search(first_forms, offsets, farthest_px, first_step_px, last_step_px, non_negative);
+    if (error < least) {
+      least = error;
+      taps.offsets_px = offsets;
+    }
+  }
+  weigh(first_forms, 1);
+  const int more_searches = near ? 1 : 2;
+  for (int i = 0; i < more_searches; ++i) {
+    const Forms its_forms = forms();
+    search(its_forms, taps.offsets_px, farthest_px, std::min(first_step_px, 4.0), last_step_px, non_negative);
+    weigh(its_forms, 1);
+  }
+  // Both axes have the same weights: halfway steps settle where neither gains by a change.
+  if (joint) {
+    const int settling_steps = near ? 3 : 6;
+    for (int i = 0; i < settling_steps; ++i) weigh(forms(), 0.5);
+  }
+  return taps;
+}
+
+}  // namespace dermis
