@@ -10,10 +10,11 @@ namespace dermis::bench {
 
 struct Case {
   std::string name;
+  std::string series;  ///< that a plot joins by a line; empty: not in the plot
   Options options;
 };
 
-/// The separable method over tap counts, plain and with rotated taps.
+/// The separable method over models, ranks and tap counts, plain and with rotated taps.
 std::vector<Case> separable_cases();
 
 /// The result of one case.

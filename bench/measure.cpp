@@ -109,7 +109,7 @@ Measurement measure(const Device& device, const Subject& subject, const std::vec
                     const std::function<void(const std::string&)>& report) {
   Measurement result;
   report("exact (takes the longest)");
-  Running exact(device, subject, {"exact", {.method = Method::exact}});
+  Running exact(device, subject, {"exact", "", {.method = Method::exact}});
   exact.run(subject);
 
   std::vector<Running> running;

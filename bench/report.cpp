@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -33,7 +34,7 @@ nlohmann::ordered_json json_row(const Row& row, const Subject& subject) {
   for (std::size_t i = 0; i < row.rel_l2.size(); ++i) errors[subject.material_names[i]] = row.rel_l2[i];
   return {{"name", row.what.name},
           {"method", row.what.options.method == Method::exact ? "exact" : "separable"},
-          {"rank", 1},
+          {"rank", row.what.options.taps.rank},
           {"taps", row.what.options.taps.count},
           {"jitter", row.what.options.jitter},
           {"size", {subject.width, subject.height}},
@@ -46,6 +47,16 @@ nlohmann::ordered_json json_row(const Row& row, const Subject& subject) {
           {"plan_ms", row.plan_ms},
           {"rel_l2", errors},
           {"max_err", row.max_error}};
+}
+
+/// What a plot joins by lines, in the order of the rows.
+std::vector<std::string> series_of(const std::vector<Row>& rows) {
+  std::vector<std::string> series;
+  for (const Row& row : rows) {
+    const bool is_new = std::find(series.begin(), series.end(), row.what.series) == series.end();
+    if (is_new && !row.what.series.empty()) series.push_back(row.what.series);
+  }
+  return series;
 }
 
 }  // namespace
@@ -85,27 +96,32 @@ void plot(const std::filesystem::path& path, const Measurement& measurement, con
   std::FILE* gnuplot = popen("gnuplot", "w");
   if (gnuplot == nullptr) throw Error(ErrorCode::output, "--plot", "no gnuplot", "gnuplot on the PATH");
   const std::string terminal =
-      path.extension() == ".png" ? "pngcairo size 1200,800 font ',14'" : "svg size 900,600 dynamic background 'white'";
+      path.extension() == ".png" ? "pngcairo size 1200,800 font ',14'" : "svg size 1100,600 dynamic background 'white'";
   fmt::print(gnuplot,
              "set terminal {}\nset output '{}'\nset logscale xy\nset grid\nset xlabel 'time, ms'\n"
              "set ylabel 'relative L2 error against exact'\nset title '{}, {}x{}, {} threads of {}' noenhanced\n"
-             "set format y '%.1e'\nset key top right\nplot ",
+             "set format y '%.1e'\nset key outside right font ',10'\nplot ",
              terminal, path.string(), subject.name, subject.width, subject.height, device.compute_units, device.name);
+  const std::vector<std::string> series = series_of(measurement.rows);
   for (std::size_t i = 0; i < subject.material_names.size(); ++i) {
-    fmt::print(
-        gnuplot,
-        "{}'-' using 1:2 with linespoints pointtype {} title '{}', '-' using 1:2:3 with labels offset 0,1 notitle",
-        i == 0 ? "" : ", ", 5 + i, subject.material_names[i]);
+    for (std::size_t k = 0; k < series.size(); ++k) {
+      fmt::print(gnuplot,
+                 "{}'-' using 1:2 with linespoints linecolor {} dashtype {} pointtype {} title '{}, {}', "
+                 "'-' using 1:2:3 with labels offset 0,0.7 font ',9' notitle",
+                 i + k == 0 ? "" : ", ", i + 1, k + 1, 5 + 2 * i, subject.material_names[i], series[k]);
+    }
   }
   fmt::print(gnuplot, "\n");
   for (std::size_t i = 0; i < subject.material_names.size(); ++i) {
-    for (const bool labels : {false, true}) {
-      for (const Row& row : measurement.rows) {
-        if (row.what.options.jitter > 0) continue;
-        fmt::print(gnuplot, "{} {} {}\n", row.ms, row.rel_l2[i],
-                   labels ? std::to_string(row.what.options.taps.count) : "");
+    for (const std::string& its : series) {
+      for (const bool labels : {false, true}) {
+        for (const Row& row : measurement.rows) {
+          if (row.what.series != its) continue;
+          fmt::print(gnuplot, "{} {} {}\n", row.ms, row.rel_l2[i],
+                     labels ? std::to_string(row.what.options.taps.count) : "");
+        }
+        fmt::print(gnuplot, "e\n");
       }
-      fmt::print(gnuplot, "e\n");
     }
   }
   if (pclose(gnuplot) != 0) throw Error(ErrorCode::output, "--plot", path.string(), "gnuplot to draw it");

@@ -141,7 +141,7 @@ double DesignedTaps::predicted_rel_l2(const PlacedTaps& placed, double pixel_mm)
   return relative_l2(errors, truths);
 }
 
-SizedTaps DesignedTaps::at(double pixel_mm, Fetch fetch, const std::vector<double>& near_px) const {
+SizedTaps DesignedTaps::at(double pixel_mm, Fetch fetch, Search search, const std::vector<double>& near_px) const {
   const double footprint = 1 / pixel_mm;
   const double exact_last_px = std::ceil(radius_mm_ * footprint - 0.5);
   const int pairs = design_.count / 2;
@@ -151,7 +151,7 @@ SizedTaps DesignedTaps::at(double pixel_mm, Fetch fetch, const std::vector<doubl
     const int doublings = static_cast<int>(std::ceil(std::log2(exact_last_px / widest_px)));
     std::vector<double> near = near_px;
     for (double& offset_px : near) offset_px = std::ldexp(offset_px, -doublings);
-    SizedTaps taps = at(std::ldexp(pixel_mm, doublings), fetch, near);
+    SizedTaps taps = at(std::ldexp(pixel_mm, doublings), fetch, search, near);
     for (double& offset_px : taps.placed.offsets_px) offset_px = std::ldexp(offset_px, doublings);
     taps.core_half_width_px = std::ldexp(taps.core_half_width_px, doublings);
     return taps;
@@ -159,7 +159,7 @@ SizedTaps DesignedTaps::at(double pixel_mm, Fetch fetch, const std::vector<doubl
   const int last_px = std::max(1, static_cast<int>(exact_last_px));
   const bool dense = last_px <= pairs;
   if (!dense && design_.placement == Placement::optimised && pairs <= most_fitted_pairs) {
-    return fitted(pixel_mm, last_px, fetch, near_px);
+    return fitted(pixel_mm, last_px, fetch, search, near_px);
   }
   const TapRuns runs = dense ? every_pixel(last_px) : make_runs(profile_, design_.placement, footprint, last_px, pairs);
   SizedTaps taps;
@@ -169,20 +169,21 @@ SizedTaps DesignedTaps::at(double pixel_mm, Fetch fetch, const std::vector<doubl
   return taps;
 }
 
-SizedTaps DesignedTaps::fitted(double pixel_mm, int last_px, Fetch fetch, const std::vector<double>& near_px) const {
+SizedTaps DesignedTaps::fitted(double pixel_mm, int last_px, Fetch fetch, Search search,
+                               const std::vector<double>& near_px) const {
   // Few taps are better spent nearer than where the last thousandths of the light are.
   constexpr double share_worth_a_tap = 0.998;
   const int farthest_px =
       static_cast<int>(std::ceil(profile_.half_width(profile_.widest_channel(), share_worth_a_tap) / pixel_mm - 0.5));
   last_px = std::max({1, design_.count / 2, std::min(last_px, farthest_px)});
-  if (!near_px.empty()) {
+  if (search != Search::everywhere) {
     // The farthest tap is not far from where it was.
     const int near_last_px = static_cast<int>(near_px.back() * 1.25) + 2;
     last_px = std::clamp(near_last_px, design_.count / 2, last_px);
   }
   const auto channels = on_pixels(pixel_mm, last_px);
   std::vector<double> start_px = near_px;
-  if (start_px.empty()) {
+  if (search == Search::everywhere) {
     const TapRuns runs = make_runs(profile_, Placement::importance, 1 / pixel_mm, last_px, design_.count / 2);
     start_px = offsets_in(profile_, runs, 1 / pixel_mm, fetch);
   }
@@ -195,8 +196,8 @@ SizedTaps DesignedTaps::fitted(double pixel_mm, int last_px, Fetch fetch, const 
     for (std::size_t t = 0; t < model_.size(); ++t) sums[c][static_cast<Index>(t)] = model_[t].functions[c].sum();
   }
   SizedTaps taps;
-  taps.placed = fit_taps(channels, start_px, !near_px.empty(), last_px, fetch, design_.model == Model::optimised,
-                         non_negative, sums);
+  taps.placed =
+      fit_taps(channels, start_px, search, last_px, fetch, design_.model == Model::optimised, non_negative, sums);
   taps.core_half_width_px = core_half_width_px(taps.placed, pixel_mm);
   return taps;
 }

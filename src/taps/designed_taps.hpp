@@ -27,8 +27,9 @@ class DesignedTaps {
   /// The design is in range.
   DesignedTaps(const Profile& profile, const TapsDesign& design);
 
-  /// `near` are offsets to start the search from, of taps for about that size; none if empty.
-  SizedTaps at(double pixel_mm, Fetch fetch, const std::vector<double>& near_px = {}) const;
+  /// `near_px` are offsets to start the search from, or to keep, unless it is everywhere.
+  SizedTaps at(double pixel_mm, Fetch fetch, Search search = Search::everywhere,
+               const std::vector<double>& near_px = {}) const;
 
   /// The error to expect of taps that were placed for this size, over natural images.
   double predicted_rel_l2(const PlacedTaps& placed, double pixel_mm) const;
@@ -40,7 +41,7 @@ class DesignedTaps {
 
  private:
   std::array<Eigen::MatrixXd, 3> run_weights(const TapRuns& runs, double pixel_mm) const;
-  SizedTaps fitted(double pixel_mm, int last_px, Fetch fetch, const std::vector<double>& near_px) const;
+  SizedTaps fitted(double pixel_mm, int last_px, Fetch fetch, Search search, const std::vector<double>& near_px) const;
   double core_half_width_px(const PlacedTaps& placed, double pixel_mm) const;
   std::array<ChannelOnPixels, 3> on_pixels(double pixel_mm, int last_px) const;
 

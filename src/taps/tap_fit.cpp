@@ -232,7 +232,7 @@ Responses responses_of(const PlacedTaps& taps, int channel, const PowerGrid& gri
   return responses;
 }
 
-PlacedTaps fit_taps(const std::array<ChannelOnPixels, 3>& channels, std::vector<double> offsets_px, bool near,
+PlacedTaps fit_taps(const std::array<ChannelOnPixels, 3>& channels, std::vector<double> offsets_px, Search how,
                     int farthest_px, Fetch fetch, bool joint, const std::vector<bool>& non_negative,
                     const std::array<VectorXd, 3>& sums) {
   PlacedTaps taps{std::move(offsets_px), {}};
@@ -258,11 +258,12 @@ PlacedTaps fit_taps(const std::array<ChannelOnPixels, 3>& channels, std::vector<
   const double last_step_px = fetch == Fetch::linear ? 1.0 / 32 : 1;
   const Forms first_forms = forms();
   std::vector<std::vector<double>> candidates = {taps.offsets_px};
-  if (!near) candidates = starts(first_forms, taps.offsets_px, farthest_px, fetch, non_negative);
+  if (how == Search::everywhere) candidates = starts(first_forms, taps.offsets_px, farthest_px, fetch, non_negative);
   constexpr std::size_t most_candidates = 10;
   candidates.resize(std::min(candidates.size(), most_candidates));
   const double first_step_px = std::max(1.0, std::exp2(std::floor(std::log2(candidates[0].back() / 16))));
   double least = HUGE_VAL;
+  if (how == Search::nowhere) candidates.clear();
   for (std::vector<double>& offsets : candidates) {
     const double error = search(first_forms, offsets, farthest_px, first_step_px, last_step_px, non_negative);
     if (error < least) {
@@ -271,7 +272,7 @@ PlacedTaps fit_taps(const std::array<ChannelOnPixels, 3>& channels, std::vector<
     }
   }
   weigh(first_forms, 1);
-  const int more_searches = near ? 1 : 2;
+  const int more_searches = how == Search::everywhere ? 2 : how == Search::nearby ? 1 : 0;
   for (int i = 0; i < more_searches; ++i) {
     const Forms its_forms = forms();
     search(its_forms, taps.offsets_px, farthest_px, std::min(first_step_px, 4.0), last_step_px, non_negative);
@@ -279,7 +280,7 @@ PlacedTaps fit_taps(const std::array<ChannelOnPixels, 3>& channels, std::vector<
   }
   // Both axes have the same weights: halfway steps settle where neither gains by a change.
   if (joint) {
-    const int settling_steps = near ? 3 : 6;
+    const int settling_steps = how == Search::everywhere ? 6 : 3;
     for (int i = 0; i < settling_steps; ++i) weigh(forms(), 0.5);
   }
   return taps;

@@ -135,6 +135,9 @@ Taps make_taps(const Profile& profile, const TapsDesign& design) {
   taps.radius_mm = designed.radius_mm();
   for (int c = 0; c < 3; ++c) taps.relative_width[c] = static_cast<float>(designed.radius_mm(c) / taps.radius_mm);
   for (const ModelTerm& term : designed.model()) taps.terms.push_back(make_term(profile, term, taps.radius_mm));
+  // Many taps are where they were, but for the scale; a search for each rung would take a second.
+  constexpr int most_unknowns = 24;
+  const int search_step = design.rank * (design.count / 2) <= most_unknowns ? 1 : 4;
   std::vector<double> near_px;
   double previous_px = 0;
   for (int i = 0; i < Taps::octaves * rungs_per_octave; ++i) {
@@ -148,8 +151,10 @@ Taps make_taps(const Profile& profile, const TapsDesign& design) {
     }
     const double footprint = radius_px / taps.radius_mm;
     const bool as_many = static_cast<int>(near_px.size()) == design.count / 2;
-    const SizedTaps sized = designed.at(1 / footprint, Fetch::integer,
-                                        as_many ? scaled(near_px, radius_px / previous_px) : std::vector<double>{});
+    const bool look = i % search_step == 0;
+    const Search search = !as_many ? Search::everywhere : look ? Search::nearby : Search::nowhere;
+    const SizedTaps sized =
+        designed.at(1 / footprint, Fetch::integer, search, scaled(near_px, radius_px / previous_px));
     near_px = sized.placed.offsets_px;
     previous_px = radius_px;
     taps.rungs.push_back(make_rung(sized, taps.terms, footprint));
