@@ -11,6 +11,7 @@
 #include "core/passes.hpp"
 #include "core/plan_state.hpp"
 #include "core/program.hpp"
+#include "taps/check_design.hpp"
 
 namespace dermis {
 
@@ -29,6 +30,13 @@ void check_options(const Options& options) {
   }
   if (options.tile_height < 1 || options.tile_height > largest_tile_px) {
     throw Error(ErrorCode::usage, "tile_height", std::to_string(options.tile_height), "1..65536");
+  }
+}
+
+void check_designs(const std::vector<Material>& materials, const Options& options) {
+  check_design(options.taps);
+  for (const Material& material : materials) {
+    if (material.taps) check_design(*material.taps);
   }
 }
 
@@ -129,6 +137,7 @@ Plan::Plan(const Device& device, std::vector<Material> materials, const FrameDes
            const Options& options) {
   check_options(options);
   check_materials(materials, frames, options);
+  check_designs(materials, options);
   const bool follows_albedo = std::any_of(materials.begin(), materials.end(),
                                           [](const Material& m) { return m.profile.width_follows_albedo(); });
   auto state = std::make_unique<State>(State{.device = device,

@@ -1,47 +1,40 @@
 #include <algorithm>
+#include <array>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "dermis/error.hpp"
-#include "taps/designed_taps.hpp"
+#include "dermis/taps.hpp"
 
 namespace dermis {
 
 namespace {
 
-int cost(const TapsDesign& design) { return (1 + design.rank) * design.count; }
+constexpr std::array counts{5, 7, 9, 11, 13, 17, 21, 25, 33, 41, 49, 65};
 
-/// By ascending cost; of equal cost the higher rank first, which is better where both will do.
-std::vector<TapsDesign> candidates() {
-  std::vector<TapsDesign> designs;
-  for (int rank = 1; rank <= 3; ++rank) {
-    for (const int count : {5, 7, 9, 11, 13, 17, 21, 25, 33, 41, 49, 65}) {
-      designs.push_back({.model = Model::optimised, .rank = rank, .count = count, .placement = Placement::optimised});
-    }
-  }
-  std::stable_sort(designs.begin(), designs.end(), [](const TapsDesign& a, const TapsDesign& b) {
-    return cost(a) != cost(b) ? cost(a) < cost(b) : a.rank > b.rank;
-  });
-  return designs;
+int reads(const TapsDesign& design) { return (1 + design.rank) * design.count; }
+
+/// The fewest taps of a rank that do; more taps are not worse.
+std::optional<TapsDesign> cheapest_of_rank(const Profile& profile, int rank, double tolerance, double pixel_mm) {
+  const auto design = [&](int count) { return TapsDesign{.rank = rank, .count = count}; };
+  const auto does_not_do = [&](int count) {
+    return make_tap_set(profile, design(count), pixel_mm).predicted_rel_l2 > tolerance;
+  };
+  const auto* fewest = std::partition_point(counts.begin(), counts.end(), does_not_do);
+  return fewest == counts.end() ? std::nullopt : std::optional(design(*fewest));
 }
 
 }  // namespace
 
 std::optional<TapsDesign> cheapest_design(const Profile& profile, double tolerance, double pixel_mm) {
   if (!(tolerance > 0)) throw Error(ErrorCode::usage, "tolerance", std::to_string(tolerance), "above 0");
-  // More taps are not worse, so a rank whose most taps do not do is out.
-  int lowest_rank = 1;
-  for (; lowest_rank <= 3; ++lowest_rank) {
-    const TapsDesign best{
-        .model = Model::optimised, .rank = lowest_rank, .count = 65, .placement = Placement::optimised};
-    if (make_tap_set(profile, best, pixel_mm).predicted_rel_l2 <= tolerance) break;
+  std::optional<TapsDesign> cheapest;
+  for (int rank = 1; rank <= 3; ++rank) {
+    const auto design = cheapest_of_rank(profile, rank, tolerance, pixel_mm);
+    // Of equal cost the higher rank, which is better where both will do.
+    if (design && (!cheapest || reads(*design) <= reads(*cheapest))) cheapest = design;
   }
-  for (const TapsDesign& design : candidates()) {
-    if (design.rank < lowest_rank) continue;
-    if (make_tap_set(profile, design, pixel_mm).predicted_rel_l2 <= tolerance) return design;
-  }
-  return std::nullopt;
+  return cheapest;
 }
 
 }  // namespace dermis

@@ -13,9 +13,6 @@
 
 namespace dermis {
 
-/// Throws Error(usage) that names what is out of range.
-void check_design(const TapsDesign& design);
-
 /// Taps for one size of pixel.
 struct SizedTaps {
   PlacedTaps placed;

@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "dermis/error.hpp"
+#include "taps/check_design.hpp"
 #include "taps/designed_taps.hpp"
 
 namespace dermis {

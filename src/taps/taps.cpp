@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "taps/check_design.hpp"
 #include "taps/designed_taps.hpp"
 #include "taps/radial_table.hpp"
 

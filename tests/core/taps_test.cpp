@@ -178,3 +178,20 @@ TEST_CASE("a bad number of taps is refused", "[taps]") {
                       "taps: got " + std::to_string(count) + ", want an odd number, 3..2047");
   }
 }
+
+TEST_CASE("the cheapest design meets its tolerance", "[taps]") {
+  const Profile profile = dermis::preset("skin").profile;
+  const double pixel_mm = 0.15;
+  double reads = 0;
+  for (const double tolerance : {0.1, 0.03, 0.015, 0.006, 0.002}) {
+    const auto design = dermis::cheapest_design(profile, tolerance, pixel_mm);
+    CAPTURE(tolerance);
+    REQUIRE(design);
+    CHECK(dermis::make_tap_set(profile, *design, pixel_mm).predicted_rel_l2 <= tolerance);
+    CHECK((1 + design->rank) * design->count >= reads);
+    reads = (1 + design->rank) * design->count;
+  }
+  CHECK(reads > 40);
+  CHECK_FALSE(dermis::cheapest_design(profile, 1e-6, pixel_mm));
+  CHECK_THROWS_WITH(dermis::cheapest_design(profile, 0, pixel_mm), Catch::Contains("tolerance"));
+}
