@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "dermis/error.hpp"
+#include "paper.hpp"
 #include "report.hpp"
 
 namespace {
@@ -19,6 +20,7 @@ struct Arguments {
   int rounds = 15;
   std::string json;
   std::string plot;
+  std::string paper;
 };
 
 dermis::bench::Subject subject_of(const Arguments& arguments) {
@@ -35,12 +37,20 @@ dermis::bench::Subject subject_of(const Arguments& arguments) {
   return dermis::bench::load_subject(arguments.picture, arguments.mm_per_unit, ids, names);
 }
 
+void report(const std::string& text) { fmt::print(stderr, "dermis-bench: {}\n", text); }
+
 void run(const Arguments& arguments) {
+  if (!arguments.paper.empty()) {
+    fmt::print("{}", dermis::bench::reproduce_paper(arguments.paper, report));
+    if (arguments.picture.empty()) return;
+  }
+  if (arguments.picture.empty()) {
+    throw dermis::Error(dermis::ErrorCode::usage, "picture", "none", "an EXR file, or --paper and a folder");
+  }
   const dermis::Device device = dermis::Device::open(arguments.device, arguments.threads);
   const dermis::bench::Subject subject = subject_of(arguments);
   const auto measurement =
-      dermis::bench::measure(device, subject, dermis::bench::separable_cases(), arguments.rounds,
-                             [](const std::string& text) { fmt::print(stderr, "dermis-bench: {}\n", text); });
+      dermis::bench::measure(device, subject, dermis::bench::separable_cases(), arguments.rounds, report);
   fmt::print("{}", dermis::bench::table_of(measurement, subject, device.info()));
   if (!arguments.json.empty()) {
     std::ofstream file(arguments.json);
@@ -58,7 +68,7 @@ int main(int argc, char** argv) {
   CLI::App app(
       "Times and errors of the separable method against the exact one, on a Cycles picture with position, depth and "
       "ids.");
-  app.add_option("picture", arguments.picture, "EXR file")->required();
+  app.add_option("picture", arguments.picture, "EXR file; needed without --paper");
   app.add_option("--mm-per-unit", arguments.mm_per_unit, "millimetres per scene unit")->capture_default_str();
   app.add_option("--material", arguments.materials, "ID=PRESET, repeatable")->capture_default_str();
   app.add_option("--device", arguments.device, "number or part of a name");
@@ -66,6 +76,9 @@ int main(int argc, char** argv) {
   app.add_option("--rounds", arguments.rounds, "rounds that count")->check(CLI::Range(1, 1000))->capture_default_str();
   app.add_option("--json", arguments.json, "write the measurement here");
   app.add_option("--plot", arguments.plot, "draw time against error here (.svg or .png)");
+  app.add_option("--paper", arguments.paper,
+                 "write the claims of Jimenez et al. 2015 beside what is measured into this folder: table.md, "
+                 "claims.json and figures");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

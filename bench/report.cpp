@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -97,12 +98,23 @@ void plot(const std::filesystem::path& path, const Measurement& measurement, con
   if (gnuplot == nullptr) throw Error(ErrorCode::output, "--plot", "no gnuplot", "gnuplot on the PATH");
   const std::string terminal =
       path.extension() == ".png" ? "pngcairo size 1200,800 font ',14'" : "svg size 1100,600 dynamic background 'white'";
-  fmt::print(gnuplot,
-             "set terminal {}\nset output '{}'\nset logscale xy\nset grid\nset xlabel 'time, ms'\n"
-             "set ylabel 'relative L2 error against exact'\nset title '{}, {}x{}, {} threads of {}' noenhanced\n"
-             "set format y '%.1e'\nset key outside right font ',10'\nplot ",
-             terminal, path.string(), subject.name, subject.width, subject.height, device.compute_units, device.name);
   const std::vector<std::string> series = series_of(measurement.rows);
+  double least = HUGE_VAL;
+  double most = 0;
+  for (const Row& row : measurement.rows) {
+    for (const double error : row.rel_l2) {
+      least = std::min(least, error);
+      most = std::max(most, error);
+    }
+  }
+  fmt::print(gnuplot,
+             "set terminal {}\nset output '{}'\nset logscale xy\nset xtics (10,15,20,30,40,50,70,100)\nset ytics "
+             "(0.003,0.005,0.007,0.01,0.015,0.02,0.03,0.05,0.1)\nset grid\nset xlabel 'time, ms'\n"
+             "set ylabel 'relative L2 error against exact'\nset title '{}, {}x{}, {} threads of {}' noenhanced\n"
+             "set format y '%g'\nset key outside right font ',10'\n"
+             "set yrange [{}:{}]\nset format x '%g'\nplot ",
+             terminal, path.string(), subject.name, subject.width, subject.height, device.compute_units, device.name,
+             least * 0.9, most * 1.2);
   for (std::size_t i = 0; i < subject.material_names.size(); ++i) {
     for (std::size_t k = 0; k < series.size(); ++k) {
       fmt::print(gnuplot,
