@@ -41,9 +41,9 @@ enum class Lighting {
 
 struct Options {
   Method method = Method::separable;
-  TapsDesign taps = {.rank = 2};    ///< of every material that does not have its own
-  double jitter = 0;       ///< share of the kernel radius within which taps are rotated per pixel, 0..1
-  std::uint32_t seed = 0;  ///< of the rotation
+  TapsDesign taps = {.rank = 2};  ///< of every material that does not have its own
+  double jitter = 0;              ///< share of the kernel radius within which taps are rotated per pixel, 0..1
+  std::uint32_t seed = 0;         ///< of the rotation
   Lighting lighting = Lighting::raw;
   double albedo_mix = 0;  ///< m in 0..1: albedo^m is put in before the passes, albedo^(1-m) after
   int tile_width = 64;    ///< px, a multiple of 16; the result does not depend on it
