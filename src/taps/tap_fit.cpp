@@ -36,6 +36,9 @@ class QuadraticForm {
   double solve(const std::vector<double>& offsets_px, const std::vector<bool>& non_negative, MatrixXd* weights) const;
 
  private:
+  /// What weights of the terms first..last-1 take from the error at best; puts them in their columns.
+  double change(int first, int last, const std::vector<double>& offsets_px, const std::vector<bool>& non_negative,
+                MatrixXd* weights) const;
   double product(int block, double offset_a, double offset_b) const;
   double target(int term, double offset_px) const;
 
@@ -93,61 +96,59 @@ double QuadraticForm::product(int block, double offset_a, double offset_b) const
   return sum;
 }
 
+/// Makes x^T matrix x / 2 - right^T x least, of which the entries marked in `non_negative` are not below 0. `matrix`
+/// has its lower half. What would be below is held at 0, one entry after the other; `right` is 0 there at the end.
+VectorXd least_squares(MatrixXd& matrix, VectorXd& right, const std::vector<bool>& non_negative) {
+  const auto size = static_cast<int>(right.size());
+  std::vector<bool> held(size, false);
+  for (;;) {
+    const VectorXd x = matrix.selfadjointView<Eigen::Lower>().llt().solve(right);
+    int worst = -1;
+    for (int row = 0; row < size; ++row) {
+      if (non_negative[row] && !held[row] && x[row] < 0 && (worst < 0 || x[row] < x[worst])) worst = row;
+    }
+    if (worst < 0) return x;
+    held[worst] = true;
+    matrix.row(worst).head(worst).setZero();
+    matrix.col(worst).tail(size - worst).setZero();
+    matrix(worst, worst) = 1;
+    right[worst] = 0;
+  }
+}
+
 double QuadraticForm::solve(const std::vector<double>& offsets_px, const std::vector<bool>& non_negative,
                             MatrixXd* weights) const {
-  const auto pairs = static_cast<int>(offsets_px.size());
-  if (weights != nullptr) weights->setZero(pairs, terms_);
+  if (weights != nullptr) weights->setZero(static_cast<Index>(offsets_px.size()), terms_);
+  if (joint_) return constant_ + change(0, terms_, offsets_px, non_negative, weights);
   double value = constant_;
-  // All terms in one system, or one system each.
-  const int systems = joint_ ? 1 : terms_;
-  for (int system = 0; system < systems; ++system) {
-    const int first = joint_ ? 0 : system;
-    const int last = joint_ ? terms_ : system + 1;
-    const int size = (last - first) * pairs;
-    MatrixXd matrix(size, size);
-    VectorXd right(size);
-    for (int t = first; t < last; ++t) {
-      for (int i = 0; i < pairs; ++i) {
-        const int row = (t - first) * pairs + i;
-        right[row] = target(t, offsets_px[i]);
-        for (int other = first; other <= t; ++other) {
-          for (int j = 0; j < (other == t ? i + 1 : pairs); ++j) {
-            const int column = (other - first) * pairs + j;
-            matrix(row, column) = product(t * terms_ + other, offsets_px[i], offsets_px[j]);
-          }
-        }
-      }
-    }
-    // A term of no or little scale must not grow without bound.
-    constexpr double ridge = 1e-11;
-    matrix.diagonal().array() += ridge * matrix.diagonal().maxCoeff() + std::numeric_limits<double>::min();
-    VectorXd x = matrix.selfadjointView<Eigen::Lower>().llt().solve(right);
-    // Weights that come out negative where they must not be are held at 0, one after the other.
-    std::vector<bool> held(size, false);
-    for (bool again = true; again;) {
-      again = false;
-      int worst = -1;
-      for (int row = 0; row < size; ++row) {
-        if (non_negative[first + row / pairs] && !held[row] && x[row] < 0 && (worst < 0 || x[row] < x[worst])) {
-          worst = row;
-        }
-      }
-      if (worst >= 0) {
-        held[worst] = true;
-        matrix.row(worst).head(worst).setZero();
-        matrix.col(worst).tail(size - worst).setZero();
-        matrix(worst, worst) = 1;
-        right[worst] = 0;
-        x = matrix.selfadjointView<Eigen::Lower>().llt().solve(right);
-        again = true;
-      }
-    }
-    value -= right.dot(x);
-    if (weights != nullptr) {
-      for (int row = 0; row < size; ++row) (*weights)(row % pairs, first + row / pairs) = x[row];
+  for (int t = 0; t < terms_; ++t) value += change(t, t + 1, offsets_px, non_negative, weights);
+  return value;
+}
+
+double QuadraticForm::change(int first, int last, const std::vector<double>& offsets_px,
+                             const std::vector<bool>& non_negative, MatrixXd* weights) const {
+  const auto pairs = static_cast<int>(offsets_px.size());
+  const int size = (last - first) * pairs;
+  MatrixXd matrix(size, size);
+  VectorXd right(size);
+  std::vector<bool> not_below(size);
+  for (int row = 0; row < size; ++row) {
+    const int t = first + row / pairs;
+    right[row] = target(t, offsets_px[row % pairs]);
+    not_below[row] = non_negative[t];
+    for (int column = 0; column <= row; ++column) {
+      const int other = first + column / pairs;
+      matrix(row, column) = product(t * terms_ + other, offsets_px[row % pairs], offsets_px[column % pairs]);
     }
   }
-  return value;
+  // A term of no or little scale must not grow without bound.
+  constexpr double ridge = 1e-11;
+  matrix.diagonal().array() += ridge * matrix.diagonal().maxCoeff() + std::numeric_limits<double>::min();
+  const VectorXd x = least_squares(matrix, right, not_below);
+  if (weights != nullptr) {
+    for (int row = 0; row < size; ++row) (*weights)(row % pairs, first + row / pairs) = x[row];
+  }
+  return -right.dot(x);
 }
 
 using Forms = std::vector<QuadraticForm>;
