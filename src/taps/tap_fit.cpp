@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
+#include <utility>
 
 namespace dermis {
 
@@ -102,7 +102,7 @@ VectorXd least_squares(MatrixXd& matrix, VectorXd& right, const std::vector<bool
   const auto size = static_cast<int>(right.size());
   std::vector<bool> held(size, false);
   for (;;) {
-    const VectorXd x = matrix.selfadjointView<Eigen::Lower>().llt().solve(right);
+    VectorXd x = matrix.selfadjointView<Eigen::Lower>().llt().solve(right);
     int worst = -1;
     for (int row = 0; row < size; ++row) {
       if (non_negative[row] && !held[row] && x[row] < 0 && (worst < 0 || x[row] < x[worst])) worst = row;
@@ -159,36 +159,65 @@ double least_error(const Forms& forms, const std::vector<double>& offsets_px, co
   return sum;
 }
 
+/// Positions of taps, and the least error with them.
+class Positions {
+ public:
+  Positions(const Forms& forms, const std::vector<bool>& non_negative, int farthest_px, double gap_px,
+            std::vector<double> offsets_px)
+      : forms_(forms),
+        non_negative_(non_negative),
+        farthest_px_(farthest_px),
+        gap_px_(gap_px),
+        offsets_px_(std::move(offsets_px)),
+        error_(least_error(forms_, offsets_px_, non_negative_)) {}
+
+  double error() const { return error_; }
+  const std::vector<double>& offsets_px() const { return offsets_px_; }
+
+  /// Moves each tap by a step to either side where that helps. False if it helped nowhere.
+  bool move_each(double step_px) {
+    bool moved = false;
+    for (std::size_t i = 0; i < offsets_px_.size(); ++i) moved |= move(i, -step_px) || move(i, step_px);
+    return moved;
+  }
+
+ private:
+  bool move(std::size_t i, double by_px) {
+    constexpr double worthwhile = 1 - 1e-4;
+    const double before = offsets_px_[i];
+    const double after = before + by_px;
+    const double low = (i == 0 ? 0 : offsets_px_[i - 1]) + gap_px_;
+    const double high = i + 1 < offsets_px_.size() ? offsets_px_[i + 1] - gap_px_ : farthest_px_;
+    if (after < low || after > high) return false;
+    offsets_px_[i] = after;
+    const double error_after = least_error(forms_, offsets_px_, non_negative_);
+    if (error_after < error_ * worthwhile) {
+      error_ = error_after;
+      return true;
+    }
+    offsets_px_[i] = before;
+    return false;
+  }
+
+  const Forms& forms_;
+  const std::vector<bool>& non_negative_;
+  double farthest_px_;
+  double gap_px_;  ///< least distance of two taps
+  std::vector<double> offsets_px_;
+  double error_;
+};
+
 /// Moves one tap after the other by a step as long as that helps, with ever smaller steps. Returns the error.
 double search(const Forms& forms, std::vector<double>& offsets_px, int farthest_px, double first_step_px,
               double last_step_px, const std::vector<bool>& non_negative) {
   constexpr double least_gap_px = 0.25;
-  constexpr double worthwhile = 1 - 1e-4;
-  const double gap_px = last_step_px >= 1 ? 1 : least_gap_px;
-  double error = least_error(forms, offsets_px, non_negative);
-  for (double step_px = first_step_px; step_px >= last_step_px; step_px /= 2) {
-    for (bool moved = true; moved;) {
-      moved = false;
-      for (std::size_t i = 0; i < offsets_px.size(); ++i) {
-        for (const double direction : {-1.0, 1.0}) {
-          const double before = offsets_px[i];
-          const double after = before + direction * step_px;
-          const double low = i == 0 ? gap_px : offsets_px[i - 1] + gap_px;
-          const double high = i + 1 < offsets_px.size() ? offsets_px[i + 1] - gap_px : farthest_px;
-          if (after < low || after > high) continue;
-          offsets_px[i] = after;
-          const double error_after = least_error(forms, offsets_px, non_negative);
-          if (error_after < error * worthwhile) {
-            error = error_after;
-            moved = true;
-            break;
-          }
-          offsets_px[i] = before;
-        }
-      }
-    }
+  Positions positions(forms, non_negative, farthest_px, last_step_px >= 1 ? 1 : least_gap_px, offsets_px);
+  const int halvings = static_cast<int>(std::log2(first_step_px / last_step_px));
+  for (int i = 0; i <= halvings; ++i) {
+    while (positions.move_each(std::ldexp(first_step_px, -i))) continue;
   }
-  return error;
+  offsets_px = positions.offsets_px();
+  return positions.error();
 }
 
 /// The given offsets and others whose distances grow exponentially, the most promising first.
@@ -210,6 +239,7 @@ std::vector<std::vector<double>> starts(const Forms& forms, const std::vector<do
   }
   std::sort(all.begin(), all.end());
   std::vector<std::vector<double>> result;
+  result.reserve(all.size());
   for (auto& [error, offsets_px] : all) result.push_back(std::move(offsets_px));
   return result;
 }
