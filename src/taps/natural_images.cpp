@@ -11,7 +11,8 @@ constexpr double pi = std::numbers::pi;
 constexpr int image_px = 512;
 constexpr double lowest = 2 * pi / image_px;
 
-/// Variance over squared mean, of outdoor and studio pictures alike: XXX.
+/// Variance over squared mean: a standard deviation of about half the mean, as lit and shadowed surfaces side by side
+/// have. Predicted errors are nearly in proportion to its root.
 constexpr double variance = 0.3;
 
 }  // namespace
