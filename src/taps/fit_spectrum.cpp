@@ -83,7 +83,7 @@ void add_corrections(SpectralFit& spectral, int count) {
 }
 
 /// Makes negative light an error. The weight is what holds negative light below 0.3 % for skin and 0.8 % for Burley's
-/// profile at the cost of a tenth more error on natural images.
+/// profile at the cost of a tenth to a fifth more error on natural images.
 void add_floor(SpectralFit& spectral, const Profile& profile, int channel) {
   constexpr int n = 32;
   constexpr double price = 34;
