@@ -19,8 +19,7 @@ constexpr const char* introduction =
     "percentages of a step or an edge are of its height, the largest anywhere. "
     "*Natural* pictures are four of 512x512 with a 1/f amplitude spectrum; the *dot* is a disc of 3 px radius. "
     "Models stand on every pixel unless taps are counted. W is the standard deviation of the widest Gaussian (skin) "
-    "or, "
-    "along an axis, of the widest channel (others), and is 16 px unless said otherwise. "
+    "or, along an axis, of the widest channel (others), and is 16 px unless said otherwise. "
     "*skin* is the sum of six Gaussians of d'Eon and Luebke 2007, *skin-measured* Burley's profile and *dipole-skin1*, "
     "*dipole-marble* dipoles of media of Jensen et al. 2001. The paper's own profiles and pictures are not public "
     "here, and where it gives no number, what counts as holding is our choice. Nothing here is about time.\n\n";

@@ -175,8 +175,7 @@ Claim against_gaussians(const Study& study) {
           "Abstract, Section 8",
           "SVD does better than a sum of as many Gaussians",
           "closer on natural pictures at 1, 2, 3 and 4 terms, as is or scaled, than the Gaussians that dermis fits for "
-          "least "
-          "error on such pictures (the paper's were fitted to the profile)",
+          "least error on such pictures (the paper's were fitted to the profile)",
           fmt::format("1 to 4 terms:<br>{}", fmt::join(texts, "<br>")),
           verdict_of(holds_for, fails_for),
           numbers};

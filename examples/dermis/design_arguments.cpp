@@ -90,7 +90,9 @@ void add_design_arguments(CLI::App& app, DesignArguments& arguments) {
       ->type_name("N|dense")
       ->capture_default_str();
   app.add_option("--placement", arguments.placement,
-                 "where taps lie: uniform, importance (the same light each), quadratic or optimised")
+                 "where taps lie: uniform, importance (the same light each), quadratic or optimised (up to 65 taps; "
+                 "more lie as "
+                 "by importance)")
       ->check(one_of({"uniform", "importance", "quadratic", "optimised"}))
       ->capture_default_str();
   app.add_option(

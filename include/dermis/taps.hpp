@@ -24,7 +24,7 @@ enum class Placement {
   uniform,     ///< at equal distances
   importance,  ///< each stands for the same light of the widest channel (Jimenez et al. 2015, section 6)
   quadratic,   ///< distances grow with the square of the number, as the 2012 shader has them
-  optimised,   ///< positions and weights together make the error on natural images least
+  optimised,   ///< positions and weights together make the error on natural images least; as importance beyond 65 taps
 };
 
 /// How a pass reads between pixels.
@@ -58,7 +58,7 @@ struct TapSet {
   Fetch fetch = Fetch::integer;
   std::vector<double> offsets_px;  ///< ascending and symmetric; whole unless the fetch is linear
   /// The weights are multiples of 2^-24. Those of the first term sum to exactly 1 in every channel, in float32 in any
-  /// order (those of all terms if the model is gaussians); those of a correction to exactly 0.
+  /// order (those of all terms if the model is gaussians); those of an optimised model's corrections to exactly 0.
   std::vector<TapTerm> terms;
   /// Expected relative L2 distance, all channels together, from the exact convolution with the profile, over images
   /// with a 1/f amplitude spectrum.
@@ -132,7 +132,8 @@ struct Rung {
 /// multiple of 16; in a pass whose rung is -1 each term is its sum at one point. On a plane parallel to the screen the
 /// weights are those of the rung's TapSet, to first order in the step between rungs.
 struct Taps {
-  /// The radius, mm, beyond which the passes do not look.
+  /// The radius, mm, beyond which the passes do not look: 99.9 % of the widest channel's marginal lie within for rank
+  /// 1, 99.99 % for rank 2, 99.999 % for more.
   double radius_mm = 0;
   /// The same radius of each channel's own marginal, divided by radius_mm: 1 for the widest channel.
   std::array<float, 3> relative_width{};

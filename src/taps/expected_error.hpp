@@ -62,7 +62,6 @@ class ChannelOnPixels {
   const PowerGrid& grid() const { return *grid_; }
   const Responses& model() const { return at_fine_; }
   int terms() const { return static_cast<int>(scale_.size()); }
-  double scale(int term) const { return scale_[term]; }
 
   /// The squared truth, mean apart: what errors are measured against.
   double truth_power() const { return truth_power_; }

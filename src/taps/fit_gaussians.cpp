@@ -88,8 +88,7 @@ std::vector<ModelTerm> fit_gaussians(const Profile& profile, int count) {
     const double far_mm = profile.half_width(c, 0.999);
     const double near_mm = profile.half_width(c, 0.02);
     const Frequencies frequencies = coarse_frequencies();
-    constexpr double half_width_px = 96;
-    const double pixel_mm = far_mm / half_width_px;
+    const double pixel_mm = fitting_pixel_mm(profile, c);
     const int n = frequencies.size() - 1;
     SpectrumResiduals residuals{frequencies.u.tail(n) / pixel_mm, VectorXd(n), VectorXd(n), count};
     for (int i = 0; i < n; ++i) {

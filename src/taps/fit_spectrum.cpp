@@ -17,11 +17,8 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Pixels to the half-width of the kernel that models are made for, and how many times finer than a pixel the waves are
-/// that they heed, so that they serve smaller pixels too.
-constexpr double half_width_px = 96;
+/// How many times finer than a pixel the waves are that models heed, so that they serve smaller pixels too.
 constexpr double finest_waves = 6;
-constexpr double share_within = 0.999;
 
 /// The profile's spectrum on pairs of frequencies.
 struct SpectralFit {
@@ -36,7 +33,7 @@ struct SpectralFit {
 };
 
 SpectralFit::SpectralFit(const Profile& profile, int channel)
-    : pixel_mm(profile.half_width(channel, share_within) / half_width_px),
+    : pixel_mm(fitting_pixel_mm(profile, channel)),
       frequencies(coarse_frequencies(finest_waves * std::numbers::pi)),
       basis(profile, channel) {
   const VectorXd& u = frequencies.u;
@@ -87,7 +84,7 @@ void add_corrections(SpectralFit& spectral, int count) {
 void add_floor(SpectralFit& spectral, const Profile& profile, int channel) {
   constexpr int n = 32;
   constexpr double price = 34;
-  const double far_mm = profile.half_width(channel, share_within) * 1.5;
+  const double far_mm = profile.half_width(channel, 0.999) * 1.5;
   const double near_mm = spectral.pixel_mm / 40;  // the cross that is taken away lies along the axes
   VectorXd x_mm(n);
   for (int i = 0; i < n; ++i) x_mm[i] = near_mm * std::pow(far_mm / near_mm, static_cast<double>(i) / (n - 1));

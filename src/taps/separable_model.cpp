@@ -25,6 +25,8 @@ double tail_of(const Profile& profile, int channel, const TermFunction& f, doubl
   return tail;
 }
 
+double fitting_pixel_mm(const Profile& profile, int channel) { return profile.half_width(channel, 0.999) / 96; }
+
 std::vector<ModelTerm> make_model(const Profile& profile, const TapsDesign& design) {
   switch (design.model) {
     case Model::pre_integrated: {

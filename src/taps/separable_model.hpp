@@ -35,6 +35,9 @@ struct ModelTerm {
 double value_of(const Profile& profile, int channel, const TermFunction& f, double x_mm);
 double tail_of(const Profile& profile, int channel, const TermFunction& f, double x_mm);
 
+/// The size of a pixel that models are fitted for: the kernel's half-width is 96 of them. Models hardly depend on it.
+double fitting_pixel_mm(const Profile& profile, int channel);
+
 /// The terms of a design that is in range.
 std::vector<ModelTerm> make_model(const Profile& profile, const TapsDesign& design);
 
