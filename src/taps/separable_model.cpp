@@ -7,8 +7,14 @@ namespace dermis {
 
 double TermFunction::sum() const {
   double total = marginal_share;
-  for (const Gaussian& gaussian : gaussians) total += gaussian.weight;
-  return total;
+  double size = std::abs(marginal_share);
+  for (const Gaussian& gaussian : gaussians) {
+    total += gaussian.weight;
+    size += std::abs(gaussian.weight);
+  }
+  // What is left of terms that cancel is rounding, and nothing may scale it up.
+  constexpr double rounding = 1e-14;
+  return std::abs(total) > rounding * size ? total : 0;
 }
 
 double value_of(const Profile& profile, int channel, const TermFunction& f, double x_mm) {
