@@ -39,6 +39,13 @@ enum class Lighting {
   lit,  ///< irradiance times albedo; where an albedo is below 1e-4 the irradiance counts as 0
 };
 
+/// What becomes of a pixel whose light or albedo is not finite. It never gives light to another.
+enum class BadPixels {
+  keep,   ///< it is left as it is
+  zero,   ///< its outputs are 0
+  error,  ///< the run fails and writes nothing; not for enqueue
+};
+
 struct Options {
   Method method = Method::separable;
   TapsDesign taps = {.rank = 2};  ///< of every material that does not have its own
@@ -46,6 +53,7 @@ struct Options {
   std::uint32_t seed = 0;         ///< of the rotation
   Lighting lighting = Lighting::raw;
   double albedo_mix = 0;  ///< m in 0..1: albedo^m is put in before the passes, albedo^(1-m) after
+  BadPixels bad_pixels = BadPixels::keep;
   int tile_width = 64;    ///< px, a multiple of 16; the result does not depend on it
   int tile_height = 32;   ///< px
 };
