@@ -1,34 +1,55 @@
-// What is measured: one way of filtering one frame.
+// What is measured: one way of filtering one scene.
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include "dermis/plan.hpp"
+#include "dermis/taps.hpp"
+#include "scene.hpp"
 
 namespace dermis::bench {
 
-struct Case {
-  std::string name;
-  std::string series;  ///< that a plot joins by a line; empty: not in the plot
-  Options options;
+/// Who filters.
+enum class Family {
+  dermis,            ///< the separable method
+  dermis_exact,      ///< the surface integral by brute force
+  naive,             ///< an OpenCL kernel, one work-item per pixel and pass
+  rule_2012,         ///< the same with the rules of the 2012 shader
+  simd,              ///< C++ with vectors, constant offsets, no depth
+  simd_depth,        ///< the same with weights that fall with the difference of depth
+  opencv_separable,  ///< sepFilter2D with a dense kernel per channel
+  opencv_bilateral,  ///< bilateralFilter, 15 x 15
+  fft,               ///< the exact convolution by FFTW in float
+  start_up,          ///< the first plan of a process
 };
 
-/// The separable method over models, ranks and tap counts, plain and with rotated taps.
-std::vector<Case> separable_cases();
+std::string_view name_of(Family family);
 
-/// The result of one case.
-struct Row {
-  Case what;
-  double ms = 0;               ///< median of Stats::total_ms over the rounds; of the only run for the exact method
-  double ms_p10 = 0;           ///< 10th percentile
-  double ms_p90 = 0;           ///< 90th percentile
-  double scatter_ms = 0;       ///< median of the passes alone
-  double copy_ratio = 0;       ///< ms / time of a copy of the same bytes in the same rounds
-  double loads = 0;            ///< pixels read per pixel written, both passes; 0 if it varies
-  double plan_ms = 0;          ///< building the plan
-  std::vector<double> rel_l2;  ///< of the scattered light against the exact method, per material
-  double max_error = 0;        ///< largest difference from the exact method
+/// How the images of a caller lie in memory.
+enum class Memory { planar_f32, interleaved_f16 };
+
+/// The part of the table that a case stands in.
+enum class Group { methods, coverage, width, pixels, threads, flat, start_up };
+inline constexpr Group all_groups[] = {Group::methods, Group::coverage, Group::width,   Group::pixels,
+                                       Group::threads, Group::flat,     Group::start_up};
+
+std::string_view title_of(Group group);
+
+struct Case {
+  Family family = Family::dermis;
+  Group group = Group::methods;
+  SceneSpec scene = {};
+  TapsDesign design = {.rank = 2};  ///< of dermis; of the opponents only `count`
+  double tolerance = 0;             ///< > 0: in place of the design, the cheapest that is predicted to be as good
+  int threads = 0;                  ///< of dermis; 0: all
+  Memory memory = Memory::planar_f32;
+  bool cache_is_filled = false;  ///< of a start-up: kernels were compiled by an earlier process
+
+  bool is_dermis() const { return family == Family::dermis || family == Family::dermis_exact; }
+  std::string model() const;   ///< empty where there is none
+  std::string method() const;  ///< the name up to the scene
+  std::string name() const;    ///< "dermis/optimised/r2/t17/spheres/1920x1080/w16/c100"
 };
 
 }  // namespace dermis::bench

@@ -1,22 +1,19 @@
-// A measurement as a table, as JSON and as a plot of time against error.
+// A measurement as a table, as JSON and as CSV.
 #pragma once
 
-#include <filesystem>
 #include <string>
 
-#include "measure.hpp"
+#include "measurement.hpp"
 
 namespace dermis::bench {
 
-/// A Markdown table, with the machine above it.
-std::string table_of(const Measurement& measurement, const Subject& subject, const DeviceInfo& device);
+/// For people: the machine, then one table per group of cases, then what the columns mean.
+std::string table_of(const Measurement& measurement);
 
-/// An object with machine, device, driver, version and rows.
-std::string json_of(const Measurement& measurement, const Subject& subject, const DeviceInfo& device);
+/// An object with version, machine, device, copy_ms by size, and rows. What was not measured is null.
+std::string json_of(const Measurement& measurement);
 
-/// Time against error of every row, by gnuplot, as SVG or PNG by the file's name. Throws Error(output) if it cannot be
-/// drawn.
-void plot(const std::filesystem::path& path, const Measurement& measurement, const Subject& subject,
-          const DeviceInfo& device);
+/// One line per row, under the names that the JSON has.
+std::string csv_of(const Measurement& measurement);
 
 }  // namespace dermis::bench

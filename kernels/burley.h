@@ -3,7 +3,7 @@
 // The distance in units of d within which a share u of the light leaves, 0 <= u < 1: y = exp(-r / 3d) solves
 // y^3 + 3 y = 4 (1 - u), hence y = 2 sinh(asinh(2 (1 - u)) / 3). For small u y is nearly 1 and 1 - y is solved for. One
 // step of Newton's method on the cubic takes away what the device's asinh and sinh are off by.
-inline float burley_radius(float u) {
+static inline float burley_radius(float u) {
   const float b = 2.0f * (1.0f - u);
   if (u >= 0.5f) {
     float y = 2.0f * sinh(asinh(b) / 3.0f);

@@ -1,45 +1,23 @@
-// finish: the outputs. Pixels that did not scatter keep the bits of the input.
+// finish: light that was held back, into the caller's images. A work-item has a run of `columns` pixels of a row.
 #pragma OPENCL FP_CONTRACT OFF
-#include "image.h"
-#include "light.h"
-#include "working.h"
+#include "compose.h"
 
-kernel void finish(struct FrameParams f, global const float* light, global const float* scattered,
-                   global const uchar* material, global const uchar* light_image, struct ImageParams light_params,
-                   global const uchar* albedo_image, struct ImageParams albedo_params, global const uchar* beauty_image,
-                   struct ImageParams beauty_params, global uchar* scattered_image, struct ImageParams scattered_params,
-                   int write_scattered, global uchar* result_image, struct ImageParams result_params,
-                   int write_result) {
-  const Item item = this_item(&f, 0);
-  const size_t plane = plane_size(&f);
-  for (int y = item.y_begin; y < item.y_end; ++y) {
-    for (int x = item.x_begin; x < item.x_end; ++x) {
-      const size_t at = pixel_at(&f, x, y);
-      const int m = material[at];
-      const int touched = m > 0 && !(m & NARROW_BIT);
-      const float3 before = (float3)(light[at], light[plane + at], light[2 * plane + at]);
-      const float3 after = touched ? (float3)(scattered[at], scattered[plane + at], scattered[2 * plane + at]) : before;
-      if (write_result && !touched) {
-        copy_rgb(beauty_image, &beauty_params, result_image, &result_params, x, y);
-      } else if (write_result) {
-        const float3 beauty = read_rgb(beauty_image, &beauty_params, x, y);
-        float3 albedo = (float3)(1.0f);
-#if HAS_ALBEDO
-        albedo = read_rgb(albedo_image, &albedo_params, x, y);
-#endif
-        float3 change;
-#if !LIT
-        if (f.albedo_mix == 0.0f) {
-          change = albedo * (after - before);
-        } else
-#endif
-        {
-          const float3 input = read_rgb(light_image, &light_params, x, y);
-          change = albedo_power(albedo, 1.0f - f.albedo_mix) * after - diffuse_part(input, albedo);
-        }
-        write_rgb(result_image, &result_params, x, y, beauty + change);
-      }
-      if (write_scattered) write_rgb(scattered_image, &scattered_params, x, y, after);
-    }
+// Puts the light that was held back, three planes, into the outputs. `kinds`: what became of each tile, of which those
+// without scattering are left alone unless `copies`; not looked at if `copies`.
+kernel void finish(struct FrameParams f, global const uchar* surface, global const uchar* light,
+                   struct ImageParams light_at, global const uchar* albedo, struct ImageParams albedo_at,
+                   global const uchar* beauty, struct ImageParams beauty_at, global uchar* scattered,
+                   struct ImageParams scattered_at, int writes_scattered, global uchar* result,
+                   struct ImageParams result_at, int writes_result, int zeroes_bad, int copies,
+                   global const float* held, global const uchar* kinds, int columns) {
+  const Inputs in = {light, albedo, 0, 0, light_at, albedo_at, light_at, light_at, surface};
+  const Outputs out = {beauty,    scattered,        result,        beauty_at, scattered_at,
+                       result_at, writes_scattered, writes_result, zeroes_bad};
+  const int y = get_global_id(1);
+  const InputRows rows = input_rows(&f, &in, y);
+  const int x_begin = (int)get_global_id(0) * columns;
+  for (int x = x_begin; x < min(x_begin + columns, f.width); x += V) {
+    if (!copies && kinds[y / f.tile_height * f.tiles_x + x / f.tile_width] < TILE_UNLIT) continue;
+    compose(&f, &in, &rows, &out, load_rgb(held, (size_t)f.stride * f.height, surface_at(&f, x, y)), x, y);
   }
 }

@@ -1,13 +1,13 @@
 // The caller's images: any format, any strides.
 #include "params.h"
+#include "vector.h"
 
-inline Bytes byte_at(const struct ImageParams* p, int x, int y, int channel) {
+static inline Bytes byte_at(const struct ImageParams* p, int x, int y, int channel) {
   return p->offset + y * p->row_stride + (Bytes)x * p->pixel_stride + channel * p->channel_stride;
 }
 
-inline float read_value(global const uchar* image, const struct ImageParams* p, int x, int y, int channel) {
-  global const uchar* at = image + byte_at(p, x, y, channel);
-  switch (p->format) {
+SHARED float value_at(global const uchar* at, int format) {
+  switch (format) {
     case FORMAT_F16:
       return vload_half(0, (global const half*)at);
     case FORMAT_F32:
@@ -21,11 +21,8 @@ inline float read_value(global const uchar* image, const struct ImageParams* p, 
   }
 }
 
-inline float3 read_rgb(global const uchar* image, const struct ImageParams* p, int x, int y) {
-  return (float3)(read_value(image, p, x, y, 0), read_value(image, p, x, y, 1), read_value(image, p, x, y, 2));
-}
-
-inline void write_value(global uchar* image, const struct ImageParams* p, int x, int y, int channel, float value) {
+static inline void write_value(global uchar* image, const struct ImageParams* p, int x, int y, int channel,
+                               float value) {
   global uchar* at = image + byte_at(p, x, y, channel);
   if (p->format == FORMAT_F16) {
     vstore_half_rte(value, 0, (global half*)at);
@@ -34,24 +31,120 @@ inline void write_value(global uchar* image, const struct ImageParams* p, int x,
   }
 }
 
-inline void write_rgb(global uchar* image, const struct ImageParams* p, int x, int y, float3 value) {
-  write_value(image, p, x, y, 0, value.x);
-  write_value(image, p, x, y, 1, value.y);
-  write_value(image, p, x, y, 2, value.z);
+#if V > 1
+// V halves that are not side by side.
+SHARED vfloat read_half_lanes(global const uchar* at, int pixel_stride) {
+  JOIN(ushort, V) bits;
+#define READ_LANE(lane) LANE(bits, lane) = *(global const ushort*)(at + (0x##lane) * (Bytes)pixel_stride);
+  EACH_LANE(READ_LANE)
+#undef READ_LANE
+  return JOIN(vload_half, V)(0, (const half*)&bits);
+}
+#endif
+
+// One channel of a row.
+typedef struct {
+  global const uchar* at;  // of pixel 0
+  int pixel_stride;        // bytes
+  int format;
+  int width;
+} Row;
+
+static inline Row row_of(global const uchar* image, const struct ImageParams* p, int width, int y, int channel) {
+  const Row row = {image + byte_at(p, 0, y, channel), p->pixel_stride, p->format, width};
+  return row;
 }
 
-// Copies a pixel, without touching its bits if the formats are the same.
-inline void copy_rgb(global const uchar* from, const struct ImageParams* p, global uchar* to,
-                     const struct ImageParams* q, int x, int y) {
-  for (int c = 0; c < 3; ++c) {
-    global const uchar* source = from + byte_at(p, x, y, c);
-    global uchar* target = to + byte_at(q, x, y, c);
-    if (p->format != q->format) {
-      write_value(to, q, x, y, c, read_value(from, p, x, y, c));
-    } else if (p->format == FORMAT_F16) {
-      *(global ushort*)target = *(global const ushort*)source;
-    } else {
-      *(global uint*)target = *(global const uint*)source;
+// V pixels of any format, those outside the frame 0.
+SHARED vfloat read_scattered(Row row, int x) {
+  vfloat value = (vfloat)(0.0f);
+#define READ_LANE(lane)                                                           \
+  if (x + (0x##lane) >= 0 && x + (0x##lane) < row.width) {                        \
+    global const uchar* at = row.at + (x + (0x##lane)) * (Bytes)row.pixel_stride; \
+    LANE(value, lane) = value_at(at, row.format);                                 \
+  }
+  EACH_LANE(READ_LANE)
+#undef READ_LANE
+  return value;
+}
+
+// V pixels from x on: those outside the frame are 0.
+FORCED_INLINE vfloat read_values(Row row, int x) {
+#if V > 1
+  if (x >= 0 && x + V <= row.width) {
+    global const uchar* at = row.at + x * (Bytes)row.pixel_stride;
+    if (row.format == FORMAT_F32 && row.pixel_stride == 4) return load_floats((global const float*)at);
+    if (row.format == FORMAT_F16 && row.pixel_stride == 2) return JOIN(vload_half, V)(0, (global const half*)at);
+    if (row.format == FORMAT_U8 && row.pixel_stride == 1) {
+      return JOIN(convert_float, V)(*(global const unaligned_bytes*)at);
     }
+    if (row.format == FORMAT_F16) return read_half_lanes(at, row.pixel_stride);
+  }
+#endif
+  return read_scattered(row, x);
+}
+
+// The three channels of a row.
+typedef struct {
+  Row r, g, b;
+} RgbRow;
+
+static inline RgbRow rgb_row_of(global const uchar* image, const struct ImageParams* p, int width, int y) {
+  const RgbRow row = {row_of(image, p, width, y, 0), row_of(image, p, width, y, 1), row_of(image, p, width, y, 2)};
+  return row;
+}
+
+FORCED_INLINE vrgb read_rgb(const RgbRow* row, int x) {
+  const vrgb value = {read_values(row->r, x), read_values(row->g, x), read_values(row->b, x)};
+  return value;
+}
+
+// Writes the lanes where the mask is set; x is in the frame.
+SHARED void write_values(global uchar* image, const struct ImageParams* p, int x, int y, int channel, vfloat value,
+                         vint mask) {
+#if V > 1
+  if (p->format == FORMAT_F32 && p->pixel_stride == 4 && !any_bit(~mask)) {
+    global uchar* at = image + byte_at(p, x, y, channel);
+#if __has_builtin(__builtin_nontemporal_store)
+    // Nobody reads an output soon, so it need not be fetched into a cache first.
+    if (((size_t)at & (sizeof(vfloat) - 1)) == 0) {
+      __builtin_nontemporal_store(value, (global vfloat*)at);
+      return;
+    }
+#endif
+    *(global unaligned_floats*)at = value;
+    return;
+  }
+#endif
+#define WRITE_LANE(lane) \
+  if (LANE(mask, lane)) write_value(image, p, x + (0x##lane), y, channel, LANE(value, lane));
+  EACH_LANE(WRITE_LANE)
+#undef WRITE_LANE
+}
+
+static inline void write_rgb(global uchar* image, const struct ImageParams* p, int x, int y, vrgb value, vint mask) {
+  write_values(image, p, x, y, 0, value.r, mask);
+  write_values(image, p, x, y, 1, value.g, mask);
+  write_values(image, p, x, y, 2, value.b, mask);
+}
+
+// Copies the lanes where the mask is set, without touching their bits if the formats are the same.
+SHARED void copy_rgb(global const uchar* from, const struct ImageParams* p, global uchar* to,
+                     const struct ImageParams* q, int width, int x, int y, vint mask) {
+  if (p->format == FORMAT_F16 && q->format == FORMAT_F16) {
+    for (int c = 0; c < 3; ++c) {
+      global const uchar* source = from + byte_at(p, x, y, c);
+      global uchar* target = to + byte_at(q, x, y, c);
+#define COPY_LANE(lane)                                                        \
+  if (LANE(mask, lane)) {                                                      \
+    *(global ushort*)(target + (0x##lane) * (Bytes)q->pixel_stride) =          \
+        *(global const ushort*)(source + (0x##lane) * (Bytes)p->pixel_stride); \
+  }
+      EACH_LANE(COPY_LANE)
+#undef COPY_LANE
+    }
+  } else {
+    const RgbRow row = rgb_row_of(from, p, width, y);
+    write_rgb(to, q, x, y, read_rgb(&row, x), mask);
   }
 }

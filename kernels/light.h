@@ -1,4 +1,6 @@
 // Albedo in and out of the light.
+#include "vector.h"
+
 #ifndef LIT
 #error "LIT: 1 if the albedo is in the light already"
 #endif
@@ -9,27 +11,38 @@
 // Below this the light of a lit image says nothing about the irradiance.
 #define SMALLEST_ALBEDO 1e-4f
 
+static inline vfloat power_of(vfloat albedo, float exponent) {
+  if (exponent == 0.0f) return (vfloat)(1.0f);
+  const vfloat positive = fmax(albedo, (vfloat)(0.0f));
+  return exponent == 1.0f ? positive : pow(positive, (vfloat)(exponent));
+}
+
 // albedo^exponent, 1 for exponent 0.
-inline float3 albedo_power(float3 albedo, float exponent) {
-  if (exponent == 0.0f) return (float3)(1.0f);
-  const float3 positive = fmax(albedo, 0.0f);
-  return exponent == 1.0f ? positive : pow(positive, (float3)(exponent));
+static inline vrgb albedo_power(vrgb albedo, float exponent) {
+  const vrgb result = {power_of(albedo.r, exponent), power_of(albedo.g, exponent), power_of(albedo.b, exponent)};
+  return result;
+}
+
+static inline vfloat without_albedo(vfloat light, vfloat albedo) {
+  return select((vfloat)(0.0f), light / albedo, AS_MASK(albedo >= SMALLEST_ALBEDO));
 }
 
 // The light without albedo.
-inline float3 irradiance(float3 light, float3 albedo) {
+static inline vrgb irradiance(vrgb light, vrgb albedo) {
 #if LIT && HAS_ALBEDO
-  return select((float3)(0.0f), light / albedo, isgreaterequal(albedo, (float3)(SMALLEST_ALBEDO)));
+  const vrgb result = {without_albedo(light.r, albedo.r), without_albedo(light.g, albedo.g),
+                       without_albedo(light.b, albedo.b)};
+  return result;
 #else
   return light;
 #endif
 }
 
 // What the diffuse light adds to the picture before scattering.
-inline float3 diffuse_part(float3 light, float3 albedo) {
+static inline vrgb diffuse_part(vrgb light, vrgb albedo) {
 #if LIT
   return light;
 #else
-  return light * albedo;
+  return product(light, albedo);
 #endif
 }

@@ -8,12 +8,18 @@ typedef long Bytes;
 typedef long long Bytes;
 #endif
 
-// Pixels of a row that share their tap positions; they start at multiples of this. It is part of the method, not of a
-// device: the result does not depend on the vector width.
-#define SPAN 16
+// Pixels on a side of a cell; all of them share their tap positions. It is part of the method, not of a device: the
+// result depends neither on the vector width nor on the tiles.
+#define CELL 16
 
-// Elements before the first and after the last pixel of a working row, so that a vector that straddles the frame's edge
-// stays in memory.
+// Octaves of r^4 in a table of the separable passes.
+#define OCTAVES 32
+
+// Parts of a rung that have weights of their own for flat cells.
+#define RUNG_PARTS 8
+
+// Pixels that a window has to the left and to the right of those that taps may fall on, so that a vector that straddles
+// the edge stays in memory.
 #define PADDING 16
 
 // A byte of the material plane: 0 = no material, else 1 + the index of the material. A pixel whose kernel is narrower
@@ -22,17 +28,26 @@ typedef long long Bytes;
 #define NARROW_BIT 0x80
 #define MAX_MATERIALS 127
 
-// What a tile needs.
-#define TILE_EMPTY 0
-#define TILE_NARROW 1
-#define TILE_SCATTERS 2
+// Counters of a run.
+#define COUNTER_NEXT_TILE 0
+#define COUNTER_BAD_PIXELS 1
+#define COUNTER_WORKERS 2
+#define RUN_COUNTERS 3
 
-// Counters of a tile.
+// Counters of a cell.
 #define COUNT_SCATTERED 0
 #define COUNT_NARROW 1
 #define COUNT_WITHOUT_MATERIAL 2
-#define COUNT_BAD 3
-#define COUNTERS 4
+#define COUNTERS 3
+
+// What became of a tile.
+#define TILE_WITHOUT_MATERIAL 0
+#define TILE_NARROW 1
+#define TILE_UNLIT 2
+#define TILE_UNIFORM 3
+#define TILE_FLAT 4  // all cells are flat: no depth terms
+#define TILE_CURVED 5
+#define TILE_KINDS 6
 
 // Directions of the rotation of tap axes.
 #define ROTATIONS 256
@@ -58,10 +73,13 @@ struct ImageParams {
 struct FrameParams {
   int width;
   int height;
-  int stride;  // of the working planes, in elements
-  int spans;   // per row
+  int stride;  // of the plane of materials, bytes
+  int cells_x;
+  int cells_y;
   int tile_width;
   int tile_height;
+  int tiles_x;
+  int tiles_y;
   float mm_per_unit;
   float mm_per_px_x;
   float mm_per_px_y;
@@ -70,16 +88,47 @@ struct FrameParams {
   float center_x;
   float center_y;
   float albedo_mix;
+  float widest_turn;  // how far a tap that is turned leaves its axis, px per px of its offset
 };
 
-// Where one RadialTable lies in the buffer of tables.
+// What classification learns of a cell.
+struct CellParams {
+  float depth_low, depth_high;      // mm; of all pixels with a material
+  float along_x_low, along_x_high;  // change of depth to the next pixel of the same material
+  float along_y_low, along_y_high;
+  float finest_x, finest_y;  // largest footprint of a pixel that scatters, px per mm, times its width factor
+  float radius_mm;           // largest one of the materials that scatter
+  int counters[COUNTERS];
+};
+
+// The footprint of a cell that its rungs are chosen by, px per mm: negative if the cell is flat, 0 if nothing scatters.
+struct CellFootprint {
+  float x, y;
+};
+
+// Part of a frame in memory: see window.h.
+struct WindowParams {
+  int x_begin, x_end;
+  int y_begin, y_end;
+  int row_stride;
+};
+
+// Where one LinearTable lies in the buffer of tables.
 struct TableParams {
   int first;       // index of the first node
   int first_bits;  // float bits of r^2 there
   int last_bits;   // bits of the last node less first_bits
 };
 
-// One material. The exact integral has one term.
+// A RadialTable.
+// Padded so that the coefficients of a table lie in cache lines of their own.
+struct OctavesParams {
+  int first_bits;  // float bits of r^4 where the first octave begins
+  int padding[15];
+  float coefficients[3][3][OCTAVES];
+};
+
+// One material.
 struct MaterialParams {
   float radius_mm;  // of the separable passes
   float reach_mm;   // of the exact integral
@@ -89,6 +138,8 @@ struct MaterialParams {
   int first_rung;
   int rungs;
   int first_term;
+  struct TableParams radial;     // exact integral: R(r)
+  struct TableParams cumulated;  // exact integral: the light within r
 };
 
 // One term: scale f(x) f(y).
@@ -96,8 +147,9 @@ struct TermParams {
   float scale[3];
   float sum[3];
   int normalised;
-  struct TableParams falloff;  // f(r) for separable passes, R(r) for the exact integral
-  struct TableParams core;     // integral of f over |x| < r, or of R over the disc of radius r
+  int padding[9];
+  struct OctavesParams falloff;  // f(r)
+  struct OctavesParams core;     // integral of f over |x| < r
 };
 
 // One tap set. Its weights are those of the centre, then of each pair; of every term each time.
@@ -108,12 +160,19 @@ struct RungParams {
   int pairs;
   int rotated_pairs;  // the first ones
   int first_weight;
+  int first_flat_weight;  // of the first part
+  int last_offset_px;
 };
 
 // What a pair of taps is worth in one term; of a centre, length_mm is the gain of the core.
 struct WeightParams {
   float length_mm[3];
   float share[3];  // of its weight in the first term
+};
+
+// The same on a flat cell.
+struct FlatWeight {
+  float rgb[3];
 };
 
 // One rotation of the axes, times 4096: the offset (o, 0) of the horizontal pass becomes (o * cosine, o * sine_x), the

@@ -2,7 +2,7 @@
 #include "vector.h"
 
 // An index of RotationParams for each pixel: a mix of its position and the seed by the finalizer of MurmurHash3.
-inline vint rotation_index(vint x, vint y, uint seed) {
+static inline vint rotation_index(vint x, vint y, uint seed) {
 #if V == 1
 #define AS_UINT(v) as_uint(v)
 #define AS_INT(v) as_int(v)

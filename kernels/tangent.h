@@ -1,20 +1,19 @@
-// How depth changes from pixel to pixel along a surface.
+// How depth and position change from pixel to pixel along a surface.
 #include "surface.h"
-#include "working.h"
+#include "window.h"
 
 // Change of depth per pixel along (dx, dy): the smaller one of the differences to both neighbours, 0 if they differ in
 // sign. A neighbour of another material does not count; without any the slope is 0.
-inline vfloat depth_slope(const struct FrameParams* f, global const float* depth, global const uchar* material, int x,
-                          int y, int dx, int dy) {
-  const size_t at = pixel_at(f, x, y);
-  const size_t before = y - dy < 0 ? at : pixel_at(f, x - dx, y - dy);
-  const size_t after = y + dy >= f->height ? at : pixel_at(f, x + dx, y + dy);
-  const vfloat z = load_floats(depth + at);
-  const vint m = load_bytes(material + at) & MATERIAL_MASK;
-  const vint has_before = AS_MASK((load_bytes(material + before) & MATERIAL_MASK) == m) & (vint)(-(before != at));
-  const vint has_after = AS_MASK((load_bytes(material + after) & MATERIAL_MASK) == m) & (vint)(-(after != at));
-  const vfloat to_before = keep(has_before, z - load_floats(depth + before));
-  const vfloat to_after = keep(has_after, load_floats(depth + after) - z);
+static inline vfloat depth_slope(const struct FrameParams* f, const Window* w, int x, int y, int dx, int dy) {
+  const size_t at = pixel_at(w, x, y);
+  const size_t before = y - dy < 0 ? at : pixel_at(w, x - dx, y - dy);
+  const size_t after = y + dy >= f->height ? at : pixel_at(w, x + dx, y + dy);
+  const vfloat z = load_floats(w->depth + at);
+  const vint m = load_bytes(w->surface + at) & MATERIAL_MASK;
+  const vint has_before = AS_MASK((load_bytes(w->surface + before) & MATERIAL_MASK) == m) & (vint)(-(before != at));
+  const vint has_after = AS_MASK((load_bytes(w->surface + after) & MATERIAL_MASK) == m) & (vint)(-(after != at));
+  const vfloat to_before = keep(has_before, z - load_floats(w->depth + before));
+  const vfloat to_after = keep(has_after, load_floats(w->depth + after) - z);
   const vfloat backward = select(to_after, to_before, has_before);
   const vfloat forward = select(to_before, to_after, has_after);
   const vfloat smaller = select(forward, backward, AS_MASK(fabs(backward) <= fabs(forward)));
@@ -26,16 +25,23 @@ typedef struct {
   vfloat x, y, z;
 } Tangent;
 
-inline Tangent tangent_x(const struct FrameParams* f, const Points* p, vfloat slope) {
+static inline Tangent tangent_x(const struct FrameParams* f, const Points* p, vfloat slope) {
   const vfloat size = fma(p->z, (vfloat)(f->slope_x), (vfloat)(f->mm_per_px_x));
   const Tangent t = {fma(p->x_per_z, slope, size), p->y_per_z * slope, slope};
   return t;
 }
 
-inline Tangent tangent_y(const struct FrameParams* f, const Points* p, vfloat slope) {
+static inline Tangent tangent_y(const struct FrameParams* f, const Points* p, vfloat slope) {
   const vfloat size = fma(p->z, (vfloat)(f->slope_y), (vfloat)(f->mm_per_px_y));
   const Tangent t = {p->x_per_z * slope, fma(p->y_per_z, slope, size), slope};
   return t;
 }
 
-inline vfloat squared_length(Tangent t) { return fma(t.x, t.x, fma(t.y, t.y, t.z * t.z)); }
+static inline vfloat squared_length(Tangent t) { return fma(t.x, t.x, fma(t.y, t.y, t.z * t.z)); }
+
+// The length of surface that each pixel spans along an axis, mm.
+SHARED vfloat segment_length(const struct FrameParams* f, const Window* w, int x, int y, int axis) {
+  const Points p = points_at(f, load_floats(w->depth + pixel_at(w, x, y)), x, y);
+  const vfloat slope = depth_slope(f, w, x, y, axis == 0, axis == 1);
+  return sqrt(squared_length(axis == 0 ? tangent_x(f, &p, slope) : tangent_y(f, &p, slope)));
+}

@@ -5,6 +5,12 @@
 
 #pragma OPENCL FP_CONTRACT OFF
 
+// What depends on an argument that is known where it is called.
+#define FORCED_INLINE static inline __attribute__((always_inline))
+
+// What is called from several places: code that is there once is built sooner.
+#define SHARED static __attribute__((noinline))
+
 #define JOIN_(a, b) a##b
 #define JOIN(a, b) JOIN_(a, b)
 
@@ -37,26 +43,69 @@ typedef struct {
   vfloat r, g, b;
 } vrgb;
 
-inline vfloat load_floats(global const float* p) {
+// Through vector pointers of weak alignment, because PoCL takes vload16 apart.
+#if V > 1
+typedef vfloat unaligned_floats __attribute__((aligned(4)));
+typedef JOIN(uchar, V) unaligned_bytes __attribute__((aligned(1)));
+#endif
+
+FORCED_INLINE vfloat load_floats(global const float* p) {
 #if V == 1
   return *p;
 #else
-  return JOIN(vload, V)(0, p);
+  return *(global const unaligned_floats*)p;
 #endif
 }
 
-inline vint load_bytes(global const uchar* p) {
+FORCED_INLINE vint load_bytes(global const uchar* p) {
 #if V == 1
   return *p;
 #else
-  return JOIN(convert_int, V)(JOIN(vload, V)(0, p));
+  return JOIN(convert_int, V)(*(global const unaligned_bytes*)p);
+#endif
+}
+
+static inline void store_bytes(global uchar* p, vint value) {
+#if V == 1
+  *p = (uchar)value;
+#else
+  *(global unaligned_bytes*)p = JOIN(convert_uchar, V)(value);
 #endif
 }
 
 // p is aligned to V floats. A store through a vector pointer, because PoCL splits vstore16 in four.
-inline void store_floats(global float* p, vfloat value) { *(global vfloat*)p = value; }
+FORCED_INLINE void store_floats(global float* p, vfloat value) { *(global vfloat*)p = value; }
 
-inline vfloat lane_numbers(void) {
+// The 32 floats at p, each lane its own of them.
+FORCED_INLINE vfloat pick(global const float* p, vint index) {
+#if V == 16 && defined(__AVX512F__)
+  typedef float native_floats __attribute__((__vector_size__(64)));
+  typedef int native_ints __attribute__((__vector_size__(64)));
+  const native_floats low = __builtin_astype(*(global const float16*)p, native_floats);
+  const native_floats high = __builtin_astype(*(global const float16*)(p + 16), native_floats);
+  return __builtin_astype(__builtin_ia32_vpermi2varps512(low, __builtin_astype(index, native_ints), high), float16);
+#elif V == 8 && defined(__AVX2__)
+  typedef float native_floats __attribute__((__vector_size__(32)));
+  typedef int native_ints __attribute__((__vector_size__(32)));
+  const native_ints lane = __builtin_astype(index, native_ints);
+  vfloat part[4];
+  for (int i = 0; i < 4; ++i) {
+    const native_floats eight = __builtin_astype(*(global const float8*)(p + 8 * i), native_floats);
+    part[i] = __builtin_astype(__builtin_ia32_permvarsf256(eight, lane), float8);
+  }
+  const vfloat low = select(part[0], part[1], (index & 8) != 0);
+  const vfloat high = select(part[2], part[3], (index & 8) != 0);
+  return select(low, high, (index & 16) != 0);
+#else
+  vfloat result;
+#define PICK_LANE(lane) LANE(result, lane) = p[LANE(index, lane)];
+  EACH_LANE(PICK_LANE)
+#undef PICK_LANE
+  return result;
+#endif
+}
+
+static inline vfloat lane_numbers(void) {
 #if V == 1
   return 0.0f;
 #elif V == 4
@@ -68,7 +117,7 @@ inline vfloat lane_numbers(void) {
 #endif
 }
 
-inline vint int_lane_numbers(void) {
+static inline vint int_lane_numbers(void) {
 #if V == 1
   return 0;
 #elif V == 4
@@ -80,27 +129,75 @@ inline vint int_lane_numbers(void) {
 #endif
 }
 
-// Keeps the lanes where the mask is set, zeroes the others whatever they hold.
-inline vfloat keep(vint mask, vfloat value) { return as_vfloat(as_vint(value) & mask); }
+// Whether any bit of any lane is set. PoCL's any_bit() tests lane after lane.
+FORCED_INLINE int any_bit(vint v) {
+#if V == 1
+  return v != 0;
+#else
+#if V == 16
+  const int8 eight = v.lo | v.hi;
+  const int4 four = eight.lo | eight.hi;
+#elif V == 8
+  const int4 four = v.lo | v.hi;
+#else
+  const int4 four = v;
+#endif
+  const int2 two = four.lo | four.hi;
+  return (two.x | two.y) != 0;
+#endif
+}
 
-inline vrgb keep_rgb(vint mask, vrgb value) {
+// Keeps the lanes where the mask is set, zeroes the others whatever they hold.
+FORCED_INLINE vfloat keep(vint mask, vfloat value) { return as_vfloat(as_vint(value) & mask); }
+
+FORCED_INLINE vrgb keep_rgb(vint mask, vrgb value) {
   const vrgb kept = {keep(mask, value.r), keep(mask, value.g), keep(mask, value.b)};
   return kept;
 }
 
-inline vrgb select_rgb(vrgb otherwise, vrgb value, vint mask) {
+FORCED_INLINE vrgb select_rgb(vrgb otherwise, vrgb value, vint mask) {
   const vrgb selected = {select(otherwise.r, value.r, mask), select(otherwise.g, value.g, mask),
                          select(otherwise.b, value.b, mask)};
   return selected;
 }
 
-inline vrgb load_rgb(global const float* plane, size_t plane_size, size_t at) {
+FORCED_INLINE vrgb product(vrgb a, vrgb b) {
+  const vrgb result = {a.r * b.r, a.g * b.g, a.b * b.b};
+  return result;
+}
+
+FORCED_INLINE vrgb scaled(global const float* factor, vrgb a) {
+  const vrgb result = {factor[0] * a.r, factor[1] * a.g, factor[2] * a.b};
+  return result;
+}
+
+FORCED_INLINE vrgb times(vrgb a, vfloat factor) {
+  const vrgb result = {a.r * factor, a.g * factor, a.b * factor};
+  return result;
+}
+
+FORCED_INLINE vrgb fused(vrgb a, vrgb b, vrgb c) {
+  const vrgb result = {fma(a.r, b.r, c.r), fma(a.g, b.g, c.g), fma(a.b, b.b, c.b)};
+  return result;
+}
+
+FORCED_INLINE vrgb sum_rgb(vrgb a, vrgb b) {
+  const vrgb result = {a.r + b.r, a.g + b.g, a.b + b.b};
+  return result;
+}
+
+FORCED_INLINE vrgb same_rgb(vfloat value) {
+  const vrgb result = {value, value, value};
+  return result;
+}
+
+FORCED_INLINE vrgb load_rgb(global const float* plane, size_t plane_size, size_t at) {
   const vrgb value = {load_floats(plane + at), load_floats(plane + plane_size + at),
                       load_floats(plane + 2 * plane_size + at)};
   return value;
 }
 
-inline void store_rgb(global float* plane, size_t plane_size, size_t at, vrgb value) {
+FORCED_INLINE void store_rgb(global float* plane, size_t plane_size, size_t at, vrgb value) {
   store_floats(plane + at, value.r);
   store_floats(plane + plane_size + at, value.g);
   store_floats(plane + 2 * plane_size + at, value.b);

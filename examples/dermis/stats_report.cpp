@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "dermis/version.hpp"
@@ -48,6 +49,24 @@ json json_of(const MaterialReport& material) {
           {"pixels", material.pixels},
           {"pixel_mm", or_null(material.pixel_mm)},
           {"design", design_of(material)}};
+}
+
+std::string_view name_of(TileKind kind) {
+  switch (kind) {
+    case TileKind::without_material:
+      return "without material";
+    case TileKind::narrow:
+      return "narrow";
+    case TileKind::unlit:
+      return "unlit";
+    case TileKind::uniform:
+      return "uniform";
+    case TileKind::flat:
+      return "flat";
+    case TileKind::curved:
+      return "curved";
+  }
+  return "";
 }
 
 json times_of(const StatsReport& report) {
@@ -114,14 +133,16 @@ std::string text_of(const StatsReport& report) {
   if (report.tolerance) text += fmt::format(", tolerance {}", *report.tolerance);
   text += '\n';
   for (const MaterialReport& material : report.materials) text += text_of(material);
-  text += fmt::format("tiles       {}\n", stats.tiles);
-  text += counted("computed", stats.tiles_computed, stats.tiles);
-  text += counted("without material", stats.tiles_without_material, stats.tiles);
-  text += counted("narrow", stats.tiles_narrow, stats.tiles);
+  const auto tiles = static_cast<std::int64_t>(stats.tiles.kinds.size());
+  text += fmt::format("tiles       {}\n", tiles);
+  for (int kind = 0; kind < tile_kinds; ++kind) {
+    text += counted(name_of(static_cast<TileKind>(kind)), stats.count(static_cast<TileKind>(kind)), tiles);
+  }
   text += fmt::format("pixels      {}\n", stats.pixels);
   text += counted("scattered", stats.pixels_scattered, stats.pixels);
   text += counted("without material", stats.pixels_without_material, stats.pixels);
   text += counted("narrow", stats.pixels_narrow, stats.pixels);
+  text += counted("flat", stats.pixels_flat, stats.pixels);
   text += counted("bad", stats.pixels_bad, stats.pixels);
   return text + text_of_steps(report);
 }
@@ -138,14 +159,17 @@ std::string json_text_of(const StatsReport& report) {
                  {"camera", json_of(report.camera)},
                  {"roles", json_of(report.roles)},
                  {"materials", json::array()}};
-  object["tiles"] = {{"total", stats.tiles},
-                     {"computed", stats.tiles_computed},
-                     {"without_material", stats.tiles_without_material},
-                     {"narrow", stats.tiles_narrow}};
+  object["tiles"] = {{"total", stats.tiles.kinds.size()}};
+  for (int kind = 0; kind < tile_kinds; ++kind) {
+    std::string name(name_of(static_cast<TileKind>(kind)));
+    std::replace(name.begin(), name.end(), ' ', '_');
+    object["tiles"][name] = stats.count(static_cast<TileKind>(kind));
+  }
   object["pixels"] = {{"total", stats.pixels},
                       {"scattered", stats.pixels_scattered},
                       {"without_material", stats.pixels_without_material},
                       {"narrow", stats.pixels_narrow},
+                      {"flat", stats.pixels_flat},
                       {"bad", stats.pixels_bad}};
   for (const MaterialReport& material : report.materials) object["materials"].push_back(json_of(material));
   return json_text(object);

@@ -1,6 +1,7 @@
 /// All that is slow, done once: kernels built for what a frame holds, taps placed and uploaded.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -54,8 +55,10 @@ struct Options {
   Lighting lighting = Lighting::raw;
   double albedo_mix = 0;  ///< m in 0..1: albedo^m is put in before the passes, albedo^(1-m) after
   BadPixels bad_pixels = BadPixels::keep;
-  int tile_width = 64;    ///< px, a multiple of 16; the result does not depend on it
-  int tile_height = 32;   ///< px
+  bool skip_uniform_light = true;  ///< tiles under uniform light are copied, which may differ in the last bit
+  /// Pixels of a tile: a multiple of 16 across; 0 = what suits the device. The result does not depend on it.
+  int tile_width = 0;
+  int tile_height = 0;
 };
 
 /// The images that the frames of a plan have. No code is built for what they do not have.
@@ -75,24 +78,45 @@ struct FrameDescription {
   bool operator==(const FrameDescription&) const = default;
 };
 
+/// What became of a tile.
+enum class TileKind : std::uint8_t {
+  without_material,  ///< skipped: no pixel has a material
+  narrow,            ///< skipped: every kernel is narrower than half a pixel
+  unlit,             ///< skipped: no light within reach
+  uniform,           ///< skipped: the same light everywhere within reach
+  flat,              ///< filtered without depth terms
+  curved,            ///< filtered
+};
+inline constexpr int tile_kinds = 6;
+
+/// What became of each tile, row by row.
+struct TileMap {
+  int tile_width = 0;   ///< px
+  int tile_height = 0;  ///< px
+  int columns = 0;
+  int rows = 0;
+  std::vector<TileKind> kinds;
+};
+
 /// What one run did. Times are of the device, in milliseconds.
 struct Stats {
-  double prepare_ms = 0;   ///< images to planar working images
-  double classify_ms = 0;  ///< tiles and spans
-  double scatter_ms = 0;   ///< the passes
-  double finish_ms = 0;    ///< albedo put back, outputs written
+  double prepare_ms = 0;   ///< memory, images bound to the device
+  double classify_ms = 0;  ///< materials and shape of cells
+  double scatter_ms = 0;   ///< the passes, and all reading and writing of images that they do
+  double finish_ms = 0;    ///< outputs that had to wait for the passes
   double total_ms = 0;     ///< wall clock, transfers included
 
-  std::int64_t tiles = 0;
-  std::int64_t tiles_computed = 0;
-  std::int64_t tiles_without_material = 0;  ///< skipped: no pixel has a material
-  std::int64_t tiles_narrow = 0;            ///< skipped: every kernel is narrower than half a pixel
+  TileMap tiles;  ///< empty if the method is exact or the device works pixel by pixel
 
   std::int64_t pixels = 0;
-  std::int64_t pixels_scattered = 0;
+  std::int64_t pixels_scattered = 0;  ///< those that are bad included
   std::int64_t pixels_without_material = 0;
   std::int64_t pixels_narrow = 0;  ///< the kernel is narrower than half a pixel
-  std::int64_t pixels_bad = 0;     ///< light or albedo not finite: left alone, counted here only
+  std::int64_t pixels_flat = 0;    ///< of those scattered, on cells that need no depth terms in either pass
+  std::int64_t pixels_bad = 0;     ///< light or albedo not finite; counted where tiles are filtered
+
+  /// Tiles of one kind.
+  std::int64_t count(TileKind kind) const { return std::count(tiles.kinds.begin(), tiles.kinds.end(), kind); }
 };
 
 /// Called with the share of work done, 0..1. Returning false stops the run after the current step.

@@ -73,15 +73,17 @@ TapSet make_tap_set(const Profile& profile, const TapsDesign& design, double pix
 /// `tolerance` is not above 0 or `pixel_mm` not in 1e-12..1e12.
 std::optional<TapsDesign> cheapest_design(const Profile& profile, double tolerance, double pixel_mm);
 
-/// A function of distance, tabulated for three channels so that a kernel can evaluate it from the
-/// squared distance without a root or a logarithm: nodes sit at r^2 = 2^e (1 + m / M) for the integers
-/// e >= first_exponent and 0 <= m < M = 2^log2_nodes_per_octave, which is where the exponent and top
-/// mantissa bits of a float32 change. Between nodes the value is linear in r^2; below the first node it is
-/// the first value; from the last node on it is the last value (which is 0 for a falloff).
+/// A function of distance for three channels that a kernel evaluates from the squared distance without a root, a
+/// logarithm or a look-up in memory: a parabola in each of 32 octaves of r^4,
+///
+///     value = a + t (b + t c),   r^4 = 2^(first_exponent + octave) (1 + t),   0 <= t < 1.
+///
+/// It has no jumps. Below the first octave it is the first value, beyond the last octave the last (0 for a falloff).
 struct RadialTable {
+  static constexpr int octaves = 32;
+
   int first_exponent = 0;
-  int log2_nodes_per_octave = 0;
-  std::vector<std::array<float, 3>> values;
+  std::array<std::array<std::array<float, octaves>, 3>, 3> coefficients{};  ///< of each channel: a, b, c
 };
 
 /// One term of the separable passes: scale f(x) f(y).
@@ -92,7 +94,7 @@ struct Term {
   bool normalised = true;
   std::array<float, 3> sum{1, 1, 1};  ///< of the weights, where nothing is missing; 1 if normalised
   RadialTable falloff;                ///< f(r), 1/mm
-  RadialTable core;                   ///< integral of f over |x| < r; used if normalised
+  RadialTable core;                   ///< integral of f over |x| < r^2: of the root of a distance, to reach nearer to 0
 };
 
 /// What one pair of taps is worth in one term.
@@ -108,6 +110,10 @@ struct Rung {
   std::vector<std::array<float, 3>> core_gain;  ///< per term: times the core's light
   std::vector<int> offsets_px;                  ///< one symmetric pair of taps each, at + and -; ascending, > 0
   std::vector<TapWeight> weights;               ///< of all terms of the first pair, then of the second, ...
+  /// What a tap is worth on a flat cell, for kernel radii nearest to each eighth of the rung: of all terms of the centre, then
+  /// of the first pair, ... Multiples of 2^-24; of a normalised term they sum to exactly 1. The centre's is used if the
+  /// term is normalised.
+  std::array<std::vector<std::array<float, 3>>, 8> flat_weights;
 };
 
 /// What the separable passes need to know of a profile: a ladder of tap sets over kernel size, so that
@@ -115,9 +121,9 @@ struct Rung {
 /// can weigh each tap by the true distance of the surface points.
 ///
 /// A pass over pixel p of width factor k per channel (1 unless an albedo or mask scales the profile) takes the rung of
-/// its span and computes for each term t
+/// its cell and computes for each term t
 ///
-///     w_0 = core_gain core(core_half_width_px s_p / k)
+///     w_0 = core_gain core(sqrt(core_half_width_px s_p / k))
 ///     w_i = length_mm_i rung.footprint s_i falloff(|P_p - P_i| / k) / k + share_i w_i(first term)
 ///     result = sum w_i x_i / sum w_i                      if t is normalised
 ///            = sum_t x_p + sum w_i (x_i - x_p)            if not
@@ -127,10 +133,26 @@ struct Rung {
 /// 0 if they differ in sign. The sums go over the taps that lie on the same material. The horizontal pass makes one
 /// image per term from the light, the vertical pass the sum over terms of scale times its result on that image.
 ///
-/// The rung of a pass is that of the kernel radius radius_mm * max over the pixels of a span that scatter of
-/// F max_c(k_c relative_width_c), where F is the pixel's footprint and a span is 16 pixels of a row, starting at a
-/// multiple of 16; in a pass whose rung is -1 each term is its sum at one point. On a plane parallel to the screen the
-/// weights are those of the rung's TapSet, to first order in the step between rungs.
+/// A cell is 16 x 16 pixels, its corner at a multiple of 16. Its rung in a pass is that of the kernel radius
+/// radius_mm * max over its pixels that scatter of F max_c(k_c relative_width_c), where F is the pixel's footprint
+/// along the pass; if that rung is -1 each term is its sum at one point.
+///
+/// On a flat cell the weights are those of the rung: w_i = flat_weights_i, whatever the depth; and its rung in a pass
+/// along x, and the eighth of the rung, is the nearest to the kernel radius radius_mm / |T|, as the surface is seen at an
+/// angle. A cell is flat in a pass if no pixel has a width of its own and no tap is rotated, and if there is no depth,
+/// or the surface within reach is nearly a plane. Of the pixels with a material in the cells of the same row (column,
+/// for the vertical pass) that lie at least partly within ceil(largest radius_mm of the cell's materials * F) pixels of
+/// the cell, let z be the depths and g, h the differences between the depths of neighbours of the same material within
+/// a cell, in x and in y; with their middles z', g', h' and half ranges dz, dg, dh (0 where there is no pair), and x',
+/// y' = change of position with depth along the ray through the middle of the cell,
+///
+///     T  = (size(z') + x' g', y' g', g')                change of position per pixel
+///     dT = (size(dz) + |x'| dg, |y'| dg, dg)            how much it may vary; size(dz) = dz / focal length
+///     flat if |dT|^2 <= flatness^2 |T|^2
+///         and 2 dz <= columns (|g'| + dg) + rows (|h'| + dh) + |T|   no step, columns and rows counting the pixels of
+///                                                       those cells that lie in the frame
+///
+/// and the same with x and y exchanged.
 struct Taps {
   /// The radius, mm, beyond which the passes do not look: 99.9 % of the widest channel's marginal lie within for rank
   /// 1, 99.99 % for rank 2, 99.999 % for more.
@@ -139,6 +161,9 @@ struct Taps {
   std::array<float, 3> relative_width{};
   std::vector<Term> terms;  ///< the first is normalised
   std::vector<Rung> rungs;  ///< see rung_index
+
+  /// How much of its length the change of position per pixel may vary within reach on a flat cell.
+  static constexpr float flatness = 0.1F;
 
   /// Kernel radii of the first and the last rung, px: narrower kernels are left alone, wider ones use the last rung.
   static constexpr float min_radius_px = 0.5F;

@@ -27,6 +27,13 @@ Extent extent_of(const FrameImage& image, int width, int height) {
   return extent;
 }
 
+/// Of each image by its name.
+constexpr std::array<int, image_count> channel_counts = {3, 3, 1, 1, 1, 3, 3, 3};
+
+std::ptrdiff_t bytes_of_format(const params::ImageParams& image) {
+  return static_cast<std::ptrdiff_t>(bytes_of(static_cast<Format>(image.format)));
+}
+
 Layout with_strides(Layout layout, int channels, int width) {
   const auto bytes = static_cast<std::ptrdiff_t>(bytes_of(layout.format));
   if (layout.channel_stride == 0) layout.channel_stride = bytes;
@@ -154,7 +161,8 @@ std::array<FrameImage, image_count> check_frame(const Frame& frame, const FrameD
 }
 
 BoundImages::BoundImages(const cl::Context& context, const Frame& frame,
-                         const std::array<FrameImage, image_count>& images) {
+                         const std::array<FrameImage, image_count>& images)
+    : width_(frame.width), height_(frame.height) {
   std::vector<HostRange> ranges;
   const auto host_extent = [&](const FrameImage& image) {
     const Extent extent = extent_of(image, frame.width, frame.height);
@@ -208,6 +216,62 @@ const cl::Buffer& BoundImages::buffer(ImageName name) const {
 }
 
 params::ImageParams BoundImages::layout(ImageName name) const { return layouts_[static_cast<int>(name)]; }
+
+bool BoundImages::output_over(ImageName input) const {
+  return overlap(static_cast<int>(input), static_cast<int>(ImageName::scattered)) ||
+         overlap(static_cast<int>(input), static_cast<int>(ImageName::result));
+}
+
+bool BoundImages::in_place(ImageName output, ImageName input) const {
+  const int a = static_cast<int>(output);
+  const int b = static_cast<int>(input);
+  const auto same = [](const params::ImageParams& p, const params::ImageParams& q) {
+    return p.offset == q.offset && p.row_stride == q.row_stride && p.pixel_stride == q.pixel_stride &&
+           p.channel_stride == q.channel_stride && p.format == q.format;
+  };
+  return buffers_[a]() != nullptr && buffers_[a]() == buffers_[b]() && same(layouts_[a], layouts_[b]);
+}
+
+bool BoundImages::overlap(int a, int b) const {
+  if (buffers_[a]() == nullptr || buffers_[b]() == nullptr) return false;
+  if (buffers_[a]() != buffers_[b]()) {
+    // Different buffers of a caller may be parts of the same one.
+    const auto whole = [&](int i) {
+      const auto parent = buffers_[i].getInfo<CL_MEM_ASSOCIATED_MEMOBJECT>();
+      return parent() != nullptr ? parent() : buffers_[i]();
+    };
+    return whole(a) == whole(b);
+  }
+  const params::ImageParams& p = layouts_[a];
+  const params::ImageParams& q = layouts_[b];
+  // Channels of one interleaved picture: do they meet within a pixel, or with those of the pixels beside it?
+  const std::ptrdiff_t stride = std::abs(p.pixel_stride);
+  if (p.row_stride == q.row_stride && p.pixel_stride == q.pixel_stride && std::abs(p.offset - q.offset) < stride) {
+    for (int i = 0; i < channel_counts[a]; ++i) {
+      for (int j = 0; j < channel_counts[b]; ++j) {
+        const std::ptrdiff_t apart = (q.offset + j * q.channel_stride) - (p.offset + i * p.channel_stride);
+        for (const std::ptrdiff_t shift : {-stride, std::ptrdiff_t{0}, stride}) {
+          const std::ptrdiff_t from = apart + shift;
+          if (from < bytes_of_format(p) && -from < bytes_of_format(q)) return true;
+        }
+      }
+    }
+    return false;
+  }
+  const auto extent = [&](const params::ImageParams& image, int channels) {
+    Extent e{image.offset, image.offset};
+    for (const std::ptrdiff_t step : {static_cast<std::ptrdiff_t>(image.channel_stride) * (channels - 1),
+                                      static_cast<std::ptrdiff_t>(image.pixel_stride) * (width_ - 1),
+                                      static_cast<std::ptrdiff_t>(image.row_stride) * (height_ - 1)}) {
+      (step < 0 ? e.begin : e.end) += step;
+    }
+    e.end += bytes_of_format(image);
+    return e;
+  };
+  const Extent x = extent(p, channel_counts[a]);
+  const Extent y = extent(q, channel_counts[b]);
+  return x.begin < y.end && y.begin < x.end;
+}
 
 void BoundImages::read_back(const cl::CommandQueue& queue) const {
   for (std::size_t i = 0; i < host_ranges_.size(); ++i) {

@@ -42,6 +42,11 @@ class BoundImages {
   const cl::Buffer& buffer(ImageName name) const;
   params::ImageParams layout(ImageName name) const;
 
+  /// True if the outputs may lie over an image that is read.
+  bool output_over(ImageName input) const;
+  /// True if the output is the input: same place, same layout.
+  bool in_place(ImageName output, ImageName input) const;
+
   /// Makes what the device wrote visible in host memory. Blocks.
   void read_back(const cl::CommandQueue& queue) const;
 
@@ -52,6 +57,9 @@ class BoundImages {
     bool written;
   };
 
+  bool overlap(int a, int b) const;
+
+  int width_, height_;
   std::vector<HostRange> host_ranges_;
   std::vector<cl::Buffer> host_buffers_;  ///< one per range
   std::array<cl::Buffer, image_count> buffers_;

@@ -12,24 +12,25 @@ namespace {
 
 constexpr int rows_per_exact_step_px = 16;  ///< where a work-item is one pixel
 
-int round_up(int value, int multiple) { return (value + multiple - 1) / multiple * multiple; }
-
 template <class... Arguments>
 void set_arguments(cl::Kernel& kernel, const Arguments&... arguments) {
   cl_uint index = 0;
   (kernel.setArg(index++, arguments), ...);
 }
 
-params::FrameParams frame_params(const Frame& frame, const Options& options, const WorkingSize& size) {
+params::FrameParams frame_params(const Frame& frame, const Options& options, const RunSizes& sizes) {
   const Camera& camera = frame.camera;
   const bool perspective = camera.projection == Camera::Projection::perspective;
   params::FrameParams p{};
   p.width = frame.width;
   p.height = frame.height;
-  p.stride = size.stride;
-  p.spans = size.spans;
-  p.tile_width = options.tile_width;
-  p.tile_height = options.tile_height;
+  p.stride = sizes.stride();
+  p.cells_x = sizes.cells_x();
+  p.cells_y = sizes.cells_y();
+  p.tile_width = sizes.tile_width;
+  p.tile_height = sizes.tile_height;
+  p.tiles_x = sizes.tiles_x();
+  p.tiles_y = sizes.tiles_y();
   p.mm_per_unit = static_cast<float>(frame.mm_per_unit);
   if (perspective) {
     p.slope_x = static_cast<float>(1 / camera.scale_x);
@@ -41,6 +42,7 @@ params::FrameParams frame_params(const Frame& frame, const Options& options, con
   p.center_x = static_cast<float>(camera.center_x);
   p.center_y = static_cast<float>(camera.center_y);
   p.albedo_mix = static_cast<float>(options.albedo_mix);
+  p.widest_turn = static_cast<float>(std::max({1.0, camera.scale_y / camera.scale_x, camera.scale_x / camera.scale_y}));
   return p;
 }
 
@@ -60,51 +62,54 @@ std::array<params::RotationParams, ROTATIONS> rotations(const Camera& camera) {
 
 }  // namespace
 
-WorkingSize::WorkingSize(int width, int height, const Options& options)
-    : stride(round_up(width, SPAN) + 2 * PADDING),
-      plane(static_cast<std::size_t>(stride) * height),
-      spans(round_up(width, SPAN) / SPAN),
-      tiles_x(round_up(width, options.tile_width) / options.tile_width),
-      tiles_y(round_up(height, options.tile_height) / options.tile_height) {}
-
-std::size_t WorkingSize::bytes(int width, int height, int terms, bool has_pixel_width) const {
-  // light and scattered have three planes, between three per term, depth one, segments two; width factors are three
-  // more.
-  const std::size_t planes = 3 + 3 * static_cast<std::size_t>(terms) + 3 + 1 + 2 + (has_pixel_width ? 3 : 0);
-  const std::size_t floats = planes * plane + static_cast<std::size_t>(spans) * height * 2;
-  const std::size_t tiles = static_cast<std::size_t>(tiles_x) * tiles_y;
-  return floats * sizeof(float) + plane + static_cast<std::size_t>(width) * height +
-         tiles * (1 + COUNTERS * sizeof(int));
+RunSizes run_sizes(const Plan::State& plan, int width, int height) {
+  constexpr int tile_width_px = 256;
+  constexpr int most_tile_px = 512;
+  constexpr int least_tile_px = 32;
+  constexpr int tiles_per_worker = 6;
+  const Options& options = plan.options;
+  RunSizes sizes{};
+  sizes.width = width;
+  sizes.height = height;
+  sizes.tile_width = options.tile_width > 0 ? options.tile_width : tile_width_px;
+  sizes.tile_height = options.tile_height;
+  sizes.workers = plan.tiled ? std::max(1, plan.device.info().compute_units) : 0;
+  if (sizes.tile_height == 0) {
+    // Tall tiles compute few rows twice, but every worker should get some.
+    sizes.tile_height = most_tile_px;
+    while (sizes.tile_height > least_tile_px &&
+           sizes.tiles_x() * sizes.tiles_y() < tiles_per_worker * std::max(1, sizes.workers)) {
+      sizes.tile_height /= 2;
+    }
+  }
+  sizes.terms = plan.terms_per_material;
+  sizes.turns_taps = options.jitter > 0;
+  sizes.farthest_px = plan.farthest_px;
+  sizes.has_pixel_width = plan.has_pixel_width;
+  sizes.exact = options.method == Method::exact;
+  return sizes;
 }
 
-Passes::Passes(const Plan::State& plan, const Frame& frame, const BoundImages& images, cl::CommandQueue queue,
-               std::span<const cl_event> wait_for)
+Passes::Passes(const Plan::State& plan, const Frame& frame, const BoundImages& images, RunMemory& memory,
+               cl::CommandQueue queue, std::span<const cl_event> wait_for)
     : plan_(plan),
       images_(images),
+      memory_(memory),
       queue_(std::move(queue)),
-      size_(frame.width, frame.height, plan.options),
-      params_(frame_params(frame, plan.options, size_)) {
+      params_(frame_params(frame, plan.options, memory.sizes)),
+      window_{0, (frame.width + CELL - 1) / CELL * CELL, 0, frame.height, memory.sizes.stride()} {
   for (const cl_event event : wait_for) last_.emplace_back(event, true);
   const cl::Context context(plan.device.context(), true);
-  const auto allocate = [&](std::size_t bytes) { return cl::Buffer(context, CL_MEM_READ_WRITE, bytes); };
-  const std::size_t plane_bytes = size_.plane * sizeof(float);
-  const std::size_t largest_bytes = 3 * plane_bytes * plan.terms_per_material;
-  if (largest_bytes > plan.device.info().max_buffer_bytes) {
-    throw Error(ErrorCode::device, "frame size", std::to_string(largest_bytes) + " bytes for one working image",
-                "at most " + std::to_string(plan.device.info().max_buffer_bytes) + " on this device");
+  const bool light_is_scattered = plan.options.lighting == Lighting::raw && plan.options.albedo_mix == 0;
+  copies_ = (images.has(ImageName::scattered) &&
+             !(light_is_scattered && images.in_place(ImageName::scattered, ImageName::light))) ||
+            (images.has(ImageName::result) && !images.in_place(ImageName::result, ImageName::beauty)) ||
+            plan.options.bad_pixels == BadPixels::zero;
+  holds_ = plan.options.bad_pixels == BadPixels::error;
+  for (const ImageName input : {ImageName::light, ImageName::albedo, ImageName::depth, ImageName::mask}) {
+    holds_ = holds_ || images.output_over(input);
   }
-  const std::size_t tiles = static_cast<std::size_t>(size_.tiles_x) * size_.tiles_y;
-  light_ = allocate(3 * plane_bytes);
-  depth_ = allocate(plane_bytes);
-  material_ = allocate(size_.plane);
-  width_ = plan.has_pixel_width ? allocate(3 * plane_bytes) : depth_;
-  bad_ = allocate(static_cast<std::size_t>(frame.width) * frame.height);
-  footprint_ = allocate(static_cast<std::size_t>(size_.spans) * frame.height * 2 * sizeof(float));
-  tile_class_ = allocate(tiles);
-  counters_ = allocate(tiles * COUNTERS * sizeof(int));
-  segment_ = allocate(2 * plane_bytes);
-  between_ = allocate(largest_bytes);
-  scattered_ = allocate(3 * plane_bytes);
+  if (holds_) memory.need_held(context);
   if (plan.options.jitter > 0) {
     auto table = rotations(frame.camera);
     rotations_ = cl::Buffer(context, CL_MEM_READ_ONLY | CL_MEM_COPY_HOST_PTR, sizeof(table), table.data());
@@ -113,92 +118,163 @@ Passes::Passes(const Plan::State& plan, const Frame& frame, const BoundImages& i
   }
 }
 
-cl::Event Passes::launch(cl::Kernel& kernel, int columns, int rows) {
+cl::Event Passes::launch(cl::Kernel& kernel, int columns, int rows, int local) {
   cl::Event event;
-  const cl::NDRange local = plan_.item_is_tile ? cl::NDRange(1, 1) : cl::NullRange;
-  queue_.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(columns, rows), local,
-                              last_.empty() ? nullptr : &last_, &event);
+  queue_.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(columns, rows),
+                              local > 0 ? cl::NDRange(local, local) : cl::NullRange, last_.empty() ? nullptr : &last_,
+                              &event);
   last_ = {event};
   return event;
 }
 
-void Passes::prepare_and_classify() {
-  const int columns = plan_.item_is_tile ? size_.tiles_x : params_.width;
-  const int rows = plan_.item_is_tile ? size_.tiles_y : params_.height;
-  cl::Kernel prepare(plan_.program, "prepare");
-  set_arguments(prepare, params_, plan_.materials,                                         //
-                images_.buffer(ImageName::light), images_.layout(ImageName::light),        //
+int Passes::runs() const { return plan_.item_is_pixel ? params_.width : 1; }
+
+void Passes::classify() {
+  cl::Event cleared;
+  queue_.enqueueFillBuffer(memory_.counters, cl_int{0}, 0, RUN_COUNTERS * sizeof(cl_int),
+                           last_.empty() ? nullptr : &last_, &cleared);
+  last_ = {cleared};
+  const int cells_per_item = plan_.item_is_pixel ? 1 : params_.cells_x;
+  const int columns = plan_.item_is_pixel ? params_.cells_x : 1;
+  cl::Kernel survey(plan_.classify_program, "survey");
+  set_arguments(survey, params_, cells_per_item, plan_.materials,                          //
                 images_.buffer(ImageName::albedo), images_.layout(ImageName::albedo),      //
                 images_.buffer(ImageName::depth), images_.layout(ImageName::depth),        //
                 images_.buffer(ImageName::material), images_.layout(ImageName::material),  //
                 images_.buffer(ImageName::mask), images_.layout(ImageName::mask),          //
-                light_, depth_, material_, width_, bad_);
-  events_.prepare = launch(prepare, columns, rows);
-  cl::Kernel classify(plan_.program, "classify");
-  set_arguments(classify, params_, plan_.materials, depth_, material_, width_, bad_, footprint_, tile_class_,
-                counters_);
-  events_.classify = launch(classify, size_.tiles_x, size_.tiles_y);
-  const bool exact = plan_.options.method == Method::exact;
-  cl::Kernel tangents(plan_.program, exact ? "slopes" : "segments");
-  set_arguments(tangents, params_, depth_, material_, exact ? between_ : segment_);
-  events_.scatter.push_back(launch(tangents, columns, rows));
+                memory_.surface, memory_.cells);
+  events_.classify.push_back(launch(survey, columns, params_.cells_y, 1));
+  cl::Kernel footprints(plan_.classify_program, "footprints");
+  set_arguments(footprints, params_, cells_per_item, memory_.cells, memory_.footprints);
+  events_.classify.push_back(launch(footprints, columns, params_.cells_y, 1));
+  if (!plan_.tiled) prepare();
 }
 
-int Passes::scatter_steps() const {
-  if (plan_.options.method == Method::separable) return 1;
-  return plan_.item_is_tile ? size_.tiles_y : round_up(params_.height, rows_per_exact_step_px) / rows_per_exact_step_px;
-}
-
-void Passes::scatter(int step) {
-  if (plan_.options.method == Method::separable) {
-    launch_separable();
-  } else if (plan_.item_is_tile) {
-    launch_exact(step, 1);
+void Passes::prepare() {
+  const auto plane = static_cast<cl_long>(memory_.sizes.frame_plane());
+  const int columns = plan_.item_is_pixel ? 1 : memory_.sizes.stride();
+  cl::Kernel prepare(plan_.program, "prepare");
+  set_arguments(prepare, params_, window_, plan_.materials, memory_.surface,           //
+                images_.buffer(ImageName::light), images_.layout(ImageName::light),    //
+                images_.buffer(ImageName::albedo), images_.layout(ImageName::albedo),  //
+                images_.buffer(ImageName::depth), images_.layout(ImageName::depth),    //
+                images_.buffer(ImageName::mask), images_.layout(ImageName::mask),      //
+                memory_.windows, plane, columns, memory_.counters);
+  const int items = plan_.item_is_pixel ? memory_.sizes.stride() : 1;
+  events_.classify.push_back(launch(prepare, items, params_.height, plan_.item_is_pixel ? 0 : 1));
+  if (plan_.options.method == Method::exact) {
+    cl::Kernel slopes(plan_.program, "slopes");
+    set_arguments(slopes, params_, window_, memory_.windows, plane, memory_.between, columns);
+    events_.classify.push_back(launch(slopes, runs(), params_.height, plan_.item_is_pixel ? 0 : 1));
   } else {
-    const int first_row = step * rows_per_exact_step_px;
-    launch_exact(first_row, std::min(rows_per_exact_step_px, params_.height - first_row));
+    cl::Kernel segments(plan_.program, "segments");
+    set_arguments(segments, params_, window_, memory_.windows, plane, memory_.segments);
+    events_.classify.push_back(launch(segments, params_.width, params_.height, 0));
   }
 }
 
-void Passes::launch_separable() {
-  const int columns = plan_.item_is_tile ? size_.tiles_x : params_.width;
-  const int rows = plan_.item_is_tile ? size_.tiles_y : params_.height;
-  const auto pass = [&](const char* name, const cl::Buffer& from, const cl::Buffer& to) {
-    cl::Kernel kernel(plan_.program, name);
-    set_arguments(kernel, params_, 0, plan_.materials, plan_.terms, plan_.rungs, plan_.offsets, plan_.weights,
-                  plan_.nodes, rotations_, plan_.options.seed, from, depth_, segment_, material_, width_, footprint_,
-                  tile_class_, to);
-    events_.scatter.push_back(launch(kernel, columns, rows));
-  };
-  pass("scatter_x", light_, between_);
-  pass("scatter_y", between_, scattered_);
+int Passes::scatter_steps() const {
+  return plan_.options.method == Method::exact ? (params_.height + rows_per_exact_step_px - 1) / rows_per_exact_step_px
+                                               : 1;
 }
 
-void Passes::launch_exact(int first_row, int rows) {
+void Passes::scatter(int step) {
+  if (plan_.options.method == Method::exact) {
+    const int first_row = step * rows_per_exact_step_px;
+    scatter_exactly(first_row, std::min(rows_per_exact_step_px, params_.height - first_row));
+  } else if (plan_.tiled) {
+    scatter_tiles();
+  } else {
+    scatter_pixels();
+  }
+}
+
+void Passes::scatter_tiles() {
+  cl::Kernel kernel(plan_.program, "scatter");
+  const auto flag = [](bool value) { return value ? 1 : 0; };
+  set_arguments(
+      kernel, params_, plan_.materials, plan_.terms, plan_.rungs, plan_.offsets, plan_.weights, plan_.flat_weights,
+      rotations_, plan_.options.seed, memory_.surface, memory_.cells, memory_.footprints,       //
+      images_.buffer(ImageName::light), images_.layout(ImageName::light),                       //
+      images_.buffer(ImageName::albedo), images_.layout(ImageName::albedo),                     //
+      images_.buffer(ImageName::depth), images_.layout(ImageName::depth),                       //
+      images_.buffer(ImageName::mask), images_.layout(ImageName::mask),                         //
+      images_.buffer(ImageName::beauty), images_.layout(ImageName::beauty),                     //
+      images_.buffer(ImageName::scattered), images_.layout(ImageName::scattered),               //
+      flag(images_.has(ImageName::scattered)),                                                  //
+      images_.buffer(ImageName::result), images_.layout(ImageName::result),                     //
+      flag(images_.has(ImageName::result)), flag(plan_.options.bad_pixels == BadPixels::zero),  //
+      flag(copies_), flag(plan_.options.skip_uniform_light), flag(holds_), memory_.held,        //
+      memory_.windows, static_cast<cl_long>(memory_.sizes.across_plane()),                      //
+      static_cast<cl_long>(memory_.sizes.down_plane()), memory_.sizes.workers, memory_.kinds, memory_.counters);
+  // A device may give a thread several work-items in one go.
+  constexpr int items_per_worker = 8;
+  events_.scatter.push_back(launch(kernel, items_per_worker * memory_.sizes.workers, 1, 1));
+}
+
+void Passes::scatter_pixels() {
+  const auto plane = static_cast<cl_long>(memory_.sizes.frame_plane());
+  for (const char* name : {"scatter_x", "scatter_y"}) {
+    cl::Kernel kernel(plan_.program, name);
+    set_arguments(kernel, params_, window_, plan_.materials, plan_.terms, plan_.rungs, plan_.offsets, plan_.weights,
+                  plan_.flat_weights, rotations_, plan_.options.seed, memory_.footprints, memory_.windows, plane,
+                  memory_.between, memory_.segments);
+    if (events_.scatter.size() == 1) kernel.setArg(15, memory_.held);
+    events_.scatter.push_back(launch(kernel, params_.width, params_.height, 0));
+  }
+}
+
+void Passes::scatter_exactly(int first_row, int rows) {
   cl::Kernel kernel(plan_.program, "exact");
-  set_arguments(kernel, params_, first_row, plan_.materials, plan_.terms, plan_.nodes, light_, depth_, material_,
-                width_, between_, tile_class_, scattered_);
-  events_.scatter.push_back(launch(kernel, plan_.item_is_tile ? size_.tiles_x : params_.width, rows));
+  set_arguments(kernel, params_, window_, first_row, plan_.materials, plan_.nodes, memory_.windows,
+                static_cast<cl_long>(memory_.sizes.frame_plane()), memory_.between,
+                plan_.item_is_pixel ? 1 : params_.width, memory_.held);
+  events_.scatter.push_back(launch(kernel, runs(), rows, plan_.item_is_pixel ? 0 : 1));
 }
 
 void Passes::finish() {
+  if (plan_.tiled && !holds_) return;
   cl::Kernel kernel(plan_.program, "finish");
-  const int has_scattered = images_.has(ImageName::scattered) ? 1 : 0;
-  const int has_result = images_.has(ImageName::result) ? 1 : 0;
-  set_arguments(kernel, params_, light_, scattered_, material_,                        //
-                images_.buffer(ImageName::light), images_.layout(ImageName::light),    //
-                images_.buffer(ImageName::albedo), images_.layout(ImageName::albedo),  //
-                images_.buffer(ImageName::beauty), images_.layout(ImageName::beauty),  //
-                images_.buffer(ImageName::scattered), images_.layout(ImageName::scattered), has_scattered,
-                images_.buffer(ImageName::result), images_.layout(ImageName::result), has_result);
-  events_.finish = launch(kernel, plan_.item_is_tile ? size_.tiles_x : params_.width,
-                          plan_.item_is_tile ? size_.tiles_y : params_.height);
+  const auto flag = [](bool value) { return value ? 1 : 0; };
+  set_arguments(kernel, params_, memory_.surface,                                                         //
+                images_.buffer(ImageName::light), images_.layout(ImageName::light),                       //
+                images_.buffer(ImageName::albedo), images_.layout(ImageName::albedo),                     //
+                images_.buffer(ImageName::beauty), images_.layout(ImageName::beauty),                     //
+                images_.buffer(ImageName::scattered), images_.layout(ImageName::scattered),               //
+                flag(images_.has(ImageName::scattered)),                                                  //
+                images_.buffer(ImageName::result), images_.layout(ImageName::result),                     //
+                flag(images_.has(ImageName::result)), flag(plan_.options.bad_pixels == BadPixels::zero),  //
+                flag(copies_ || !plan_.tiled), memory_.held, memory_.kinds, plan_.item_is_pixel ? 1 : params_.width);
+  events_.finish.push_back(launch(kernel, runs(), params_.height, plan_.item_is_pixel ? 0 : 1));
 }
 
-std::vector<int> Passes::tile_counters() const {
-  std::vector<int> counters(static_cast<std::size_t>(size_.tiles_x) * size_.tiles_y * COUNTERS);
-  queue_.enqueueReadBuffer(counters_, CL_TRUE, 0, counters.size() * sizeof(int), counters.data());
-  return counters;
+int Passes::bad_pixels() const {
+  cl_int counters[RUN_COUNTERS] = {};
+  queue_.enqueueReadBuffer(memory_.counters, CL_TRUE, 0, sizeof(counters), counters, &last_);
+  return counters[COUNTER_BAD_PIXELS];
+}
+
+void Passes::add_to(Stats& stats) const {
+  const RunSizes& sizes = memory_.sizes;
+  std::vector<params::CellParams> cells(static_cast<std::size_t>(sizes.cells_x()) * sizes.cells_y());
+  std::vector<params::CellFootprint> footprints(cells.size());
+  queue_.enqueueReadBuffer(memory_.cells, CL_TRUE, 0, cells.size() * sizeof(cells[0]), cells.data(), &last_);
+  queue_.enqueueReadBuffer(memory_.footprints, CL_TRUE, 0, footprints.size() * sizeof(footprints[0]),
+                           footprints.data());
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const int* counters = cells[i].counters;
+    stats.pixels_scattered += counters[COUNT_SCATTERED];
+    stats.pixels_narrow += counters[COUNT_NARROW];
+    stats.pixels_without_material += counters[COUNT_WITHOUT_MATERIAL];
+    if (footprints[i].x < 0 && footprints[i].y < 0) stats.pixels_flat += counters[COUNT_SCATTERED];
+  }
+  stats.pixels = stats.pixels_scattered + stats.pixels_narrow + stats.pixels_without_material;
+  stats.pixels_bad = bad_pixels();
+  if (!plan_.tiled) return;
+  TileMap& tiles = stats.tiles;
+  tiles = {sizes.tile_width, sizes.tile_height, sizes.tiles_x(), sizes.tiles_y(), {}};
+  tiles.kinds.resize(static_cast<std::size_t>(tiles.columns) * tiles.rows);
+  queue_.enqueueReadBuffer(memory_.kinds, CL_TRUE, 0, tiles.kinds.size(), tiles.kinds.data());
 }
 
 }  // namespace dermis

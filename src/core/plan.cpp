@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
+#include <future>
 #include <set>
+#include <sstream>
 #include <string>
 
 #include "core/frame_images.hpp"
@@ -25,11 +26,11 @@ void check_options(const Options& options) {
   constexpr int largest_tile_px = 1 << 16;
   check_share(options.jitter, "jitter");
   check_share(options.albedo_mix, "albedo_mix");
-  if (options.tile_width < SPAN || options.tile_width % SPAN != 0 || options.tile_width > largest_tile_px) {
+  if (options.tile_width < 0 || options.tile_width % CELL != 0 || options.tile_width > largest_tile_px) {
     throw Error(ErrorCode::usage, "tile_width", std::to_string(options.tile_width), "a multiple of 16 up to 65536");
   }
-  if (options.tile_height < 1 || options.tile_height > largest_tile_px) {
-    throw Error(ErrorCode::usage, "tile_height", std::to_string(options.tile_height), "1..65536");
+  if (options.tile_height < 0 || options.tile_height > largest_tile_px) {
+    throw Error(ErrorCode::usage, "tile_height", std::to_string(options.tile_height), "0..65536");
   }
 }
 
@@ -63,18 +64,38 @@ void check_materials(const std::vector<Material>& materials, const FrameDescript
   }
 }
 
-std::string build_options(const Plan::State& state, int materials, int log2_nodes_per_octave) {
-  const auto define = [](const char* name, int value) {
-    return std::string(" -D") + name + "=" + std::to_string(value);
-  };
+std::string define(const char* name, int value) { return std::string(" -D") + name + "=" + std::to_string(value); }
+
+/// What all kernels are built with.
+std::string common_options(const Plan::State& state, int materials) {
   const FrameDescription& frames = state.description;
-  return "-cl-std=CL1.2" + define("V", state.item_is_tile ? state.device.info().vector_width : 1) +
-         define("ITEM_IS_TILE", state.item_is_tile ? 1 : 0) + define("MATERIALS", materials) +
-         define("TERMS", state.terms_per_material) + define("HAS_DEPTH", frames.depth ? 1 : 0) +
+  return "-cl-std=CL1.2" + define("MATERIALS", materials) + define("HAS_DEPTH", frames.depth ? 1 : 0) +
          define("HAS_MATERIAL", frames.material ? 1 : 0) + define("HAS_MASK", frames.mask ? 1 : 0) +
          define("HAS_ALBEDO", frames.albedo ? 1 : 0) + define("PIXEL_WIDTH", state.has_pixel_width ? 1 : 0) +
-         define("LIT", state.options.lighting == Lighting::lit ? 1 : 0) +
-         define("JITTER", state.options.jitter > 0 ? 1 : 0) + define("TABLE_SHIFT", 23 - log2_nodes_per_octave);
+         define("JITTER", state.options.jitter > 0 ? 1 : 0);
+}
+
+cl::Program build_classification(const cl::Context& context, const Plan::State& state, const std::string& common) {
+  std::ostringstream flatness;
+  flatness << " -DFLATNESS=" << std::scientific << Taps::flatness << "f";
+  return build_program(context, cl::Device(state.device.id(), true), {"survey.cl"},
+                       common + define("V", CELL) + flatness.str());
+}
+
+cl::Program build_passes(const cl::Context& context, const Plan::State& state, const std::string& common,
+                         int log2_nodes_per_octave) {
+  std::vector<std::string> files = {"finish.cl"};
+  if (state.tiled) {
+    files.emplace_back("tile.cl");
+  } else {
+    files.emplace_back("prepare.cl");
+    files.emplace_back(state.options.method == Method::exact ? "exact.cl" : "pixel.cl");
+  }
+  return build_program(context, cl::Device(state.device.id(), true), files,
+                       common + define("V", state.item_is_pixel ? 1 : state.device.info().vector_width) +
+                           define("TERMS", state.terms_per_material) + define("TILED", state.tiled ? 1 : 0) +
+                           define("LIT", state.options.lighting == Lighting::lit ? 1 : 0) +
+                           define("TABLE_SHIFT", 23 - log2_nodes_per_octave));
 }
 
 template <class Row>
@@ -88,31 +109,31 @@ double milliseconds(const cl::Event& event) {
   return static_cast<double>(end - start) * 1e-6;
 }
 
-struct FinishedAtEnd {
-  const cl::CommandQueue& queue;
-  ~FinishedAtEnd() { clFinish(queue()); }
-};
-
-Stats make_stats(const Passes& passes) {
-  Stats stats;
-  stats.prepare_ms = milliseconds(passes.events().prepare);
-  stats.classify_ms = milliseconds(passes.events().classify);
-  for (const cl::Event& event : passes.events().scatter) stats.scatter_ms += milliseconds(event);
-  stats.finish_ms = milliseconds(passes.events().finish);
-  const std::vector<int> counters = passes.tile_counters();
-  for (std::size_t i = 0; i < counters.size(); i += COUNTERS) {
-    const int scattered = counters[i + COUNT_SCATTERED];
-    const int narrow = counters[i + COUNT_NARROW];
-    ++stats.tiles;
-    ++(scattered > 0 ? stats.tiles_computed : narrow > 0 ? stats.tiles_narrow : stats.tiles_without_material);
-    stats.pixels_scattered += scattered;
-    stats.pixels_narrow += narrow;
-    stats.pixels_without_material += counters[i + COUNT_WITHOUT_MATERIAL];
-    stats.pixels_bad += counters[i + COUNT_BAD];
-  }
-  stats.pixels = stats.pixels_scattered + stats.pixels_narrow + stats.pixels_without_material + stats.pixels_bad;
-  return stats;
+double milliseconds(const std::vector<cl::Event>& events) {
+  double sum = 0;
+  for (const cl::Event& event : events) sum += milliseconds(event);
+  return sum;
 }
+
+/// Takes memory from the pool, and puts it back when the queue is done with it.
+class BorrowedMemory {
+ public:
+  BorrowedMemory(RunMemoryPool& pool, const cl::Context& context, const cl::CommandQueue& queue, const RunSizes& sizes)
+      : pool_(pool), queue_(queue), memory_(pool.take(context, sizes)) {}
+  ~BorrowedMemory() {
+    clFinish(queue_());
+    pool_.give_back(std::move(memory_));
+  }
+  BorrowedMemory(const BorrowedMemory&) = delete;
+  BorrowedMemory& operator=(const BorrowedMemory&) = delete;
+
+  RunMemory& operator*() const { return *memory_; }
+
+ private:
+  RunMemoryPool& pool_;
+  const cl::CommandQueue& queue_;
+  std::unique_ptr<RunMemory> memory_;
+};
 
 }  // namespace
 
@@ -140,35 +161,31 @@ Plan::Plan(const Device& device, std::vector<Material> materials, const FrameDes
   check_designs(materials, options);
   const bool follows_albedo = std::any_of(materials.begin(), materials.end(),
                                           [](const Material& m) { return m.profile.width_follows_albedo(); });
-  auto state = std::make_unique<State>(State{.device = device,
-                                             .description = frames,
-                                             .options = options,
-                                             .program = {},
-                                             .materials = {},
-                                             .terms = {},
-                                             .rungs = {},
-                                             .offsets = {},
-                                             .weights = {},
-                                             .nodes = {},
-                                             .terms_per_material = 1,
-                                             .has_pixel_width = frames.mask || follows_albedo,
-                                             .item_is_tile = device.info().type != "GPU"});
-  const MaterialTables tables = make_material_tables(materials, options);
-  state->terms_per_material = tables.terms_per_material;
+  auto state = std::make_unique<State>(device);
+  state->description = frames;
+  state->options = options;
+  state->has_pixel_width = frames.mask || follows_albedo;
+  state->item_is_pixel = device.info().type == "GPU";
+  state->tiled = !state->item_is_pixel && options.method == Method::separable;
+  const std::string common = common_options(*state, static_cast<int>(materials.size()));
   with_device_errors([&] {
     const cl::Context context(device.context(), true);
+    // The kernels are built while the taps are fitted.
+    state->terms_per_material = most_terms(materials, options);
+    auto classification = std::async(std::launch::async, [&] { return build_classification(context, *state, common); });
+    auto passes = std::async(std::launch::async,
+                             [&] { return build_passes(context, *state, common, log2_nodes_per_octave_of_exact); });
+    const MaterialTables tables = make_material_tables(materials, options, state->terms_per_material);
+    state->farthest_px = tables.farthest_px;
     state->materials = upload(context, tables.materials);
     state->terms = upload(context, tables.terms);
     state->rungs = upload(context, tables.rungs);
     state->offsets = upload(context, tables.offsets_px);
     state->weights = upload(context, tables.weights);
+    state->flat_weights = upload(context, tables.flat_weights);
     state->nodes = upload(context, tables.nodes);
-    state->program = build_program(
-        context, cl::Device(device.id(), true),
-        options.method == Method::separable
-            ? std::vector<std::string>{"prepare.cl", "classify.cl", "segments.cl", "scatter.cl", "finish.cl"}
-            : std::vector<std::string>{"prepare.cl", "classify.cl", "exact.cl", "finish.cl"},
-        build_options(*state, static_cast<int>(materials.size()), tables.log2_nodes_per_octave));
+    state->classify_program = classification.get();
+    state->program = passes.get();
   });
   state_ = std::move(state);
 }
@@ -179,6 +196,9 @@ Plan& Plan::operator=(Plan&&) noexcept = default;
 
 Stats Plan::run(const Frame& frame, const Progress& progress) const {
   const auto start = std::chrono::steady_clock::now();
+  const auto milliseconds_since_start = [&] {
+    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  };
   const auto images = check_frame(frame, state_->description, state_->options);
   const auto go_on = [&](double share) { return !progress || progress(share); };
   return with_device_errors([&] {
@@ -186,19 +206,31 @@ Stats Plan::run(const Frame& frame, const Progress& progress) const {
     const cl::CommandQueue queue(context, cl::Device(state_->device.id(), true), CL_QUEUE_PROFILING_ENABLE);
     const BoundImages bound(context, frame, images);
     // Whatever ends the run, the device must be done with the caller's memory first.
-    const FinishedAtEnd finished_at_end{queue};
-    Passes passes(*state_, frame, bound, queue, {});
-    passes.prepare_and_classify();
+    const BorrowedMemory memory(state_->memories, context, queue, run_sizes(*state_, frame.width, frame.height));
+    Passes passes(*state_, frame, bound, *memory, queue, {});
+    Stats stats;
+    stats.prepare_ms = milliseconds_since_start();
+    passes.classify();
     const int steps = passes.scatter_steps();
     for (int step = 0; step < steps; ++step) {
       passes.scatter(step);
+      if (steps == 1 && !progress) break;
       queue.finish();
       if (!go_on((step + 1.0) / (steps + 1))) return Stats{};
     }
+    if (state_->options.bad_pixels == BadPixels::error) {
+      if (const int bad = passes.bad_pixels(); bad > 0) {
+        throw Error(ErrorCode::input_unsupported, "light", std::to_string(bad) + " pixels that are not finite",
+                    "finite light and albedo, or bad_pixels keep or zero");
+      }
+    }
     passes.finish();
     bound.read_back(queue);
-    Stats stats = make_stats(passes);
-    stats.total_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    passes.add_to(stats);
+    stats.classify_ms = milliseconds(passes.events().classify);
+    stats.scatter_ms = milliseconds(passes.events().scatter);
+    stats.finish_ms = milliseconds(passes.events().finish);
+    stats.total_ms = milliseconds_since_start();
     go_on(1);
     return stats;
   });
@@ -210,24 +242,28 @@ Event Plan::enqueue(const Frame& frame, cl_command_queue queue, std::span<const 
   for (const FrameImage& image : images) {
     if (image.host != nullptr) throw Error(ErrorCode::usage, image.name, "host memory", "a buffer, to enqueue");
   }
+  if (state_->options.bad_pixels == BadPixels::error) {
+    throw Error(ErrorCode::usage, "bad_pixels", "error", "keep or zero, as enqueue cannot wait for the count");
+  }
   return with_device_errors([&] {
     const cl::Context context(state_->device.context(), true);
     const cl::CommandQueue its_queue(queue, true);
     const BoundImages bound(context, frame, images);
-    Passes passes(*state_, frame, bound, its_queue, wait_for);
-    passes.prepare_and_classify();
+    // The device keeps what it needs of it until it is done.
+    RunMemory memory(context, run_sizes(*state_, frame.width, frame.height));
+    Passes passes(*state_, frame, bound, memory, its_queue, wait_for);
+    passes.classify();
     for (int step = 0; step < passes.scatter_steps(); ++step) passes.scatter(step);
     passes.finish();
     its_queue.flush();
-    cl_event event = passes.events().finish();
+    cl_event event = passes.last_event()();
     clRetainEvent(event);
     return dermis::Event(event);
   });
 }
 
 std::size_t Plan::scratch_bytes(int width, int height) const {
-  return WorkingSize(width, height, state_->options)
-      .bytes(width, height, state_->terms_per_material, state_->has_pixel_width);
+  return run_sizes(*state_, width, height).bytes(state_->options.bad_pixels == BadPixels::error);
 }
 
 }  // namespace dermis

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/device.hpp"
+#include "core/run_memory.hpp"
 #include "dermis/plan.hpp"
 
 namespace dermis {
@@ -12,16 +13,23 @@ struct Plan::State {
   Device device;
   FrameDescription description;
   Options options;
+  cl::Program classify_program;
   cl::Program program;
   cl::Buffer materials;
   cl::Buffer terms;
   cl::Buffer rungs;
   cl::Buffer offsets;
   cl::Buffer weights;
+  cl::Buffer flat_weights;
   cl::Buffer nodes;
-  int terms_per_material;
-  bool has_pixel_width;  ///< a mask or an albedo scales the profile of each pixel
-  bool item_is_tile;     ///< a work-item computes a whole tile, else one pixel
+  int terms_per_material = 1;
+  int farthest_px = 0;           ///< no tap lies farther away
+  bool has_pixel_width = false;  ///< a mask or an albedo scales the profile of each pixel
+  bool item_is_pixel = false;    ///< a work-item computes one pixel (GPUs), else runs of pixels
+  bool tiled = false;            ///< the passes run tile by tile
+  mutable RunMemoryPool memories;
+
+  explicit State(const Device& its_device) : device(its_device) {}
 };
 
 }  // namespace dermis

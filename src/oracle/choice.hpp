@@ -1,22 +1,25 @@
 /// Decisions of a pass that float32 may be too coarse for.
 #pragma once
 
+#include <span>
+#include <vector>
+
 #include "dermis/taps.hpp"
-#include "oracle/rounding.hpp"
+#include "oracle/cell.hpp"
 
 namespace dermis::oracle {
 
-/// A whole number that a device may round to another one.
-struct Choice {
-  int nominal;
-  int lowest;
-  int highest;
+/// How a pass sums at a pixel.
+struct Way {
+  int flat_part;  ///< of the rung, whose weights of a flat cell are taken; -1: the cell is not flat, or has no taps
+  int rung;     ///< -1: the kernel is too narrow for taps
+  int rotated;  ///< how many of the rung's pairs, the innermost first
+
+  bool operator==(const Way&) const = default;
 };
 
-/// The rung for a span whose widest kernel has that footprint; -1: the kernel is too narrow for taps.
-Choice rung_choice(Bounded span_footprint, const Taps& taps);
-
-/// How many of a rung's pairs are rotated, the innermost first.
-Choice rotated_choice(const Rung& rung, const Taps& taps, double jitter);
+/// The ways for one material in a cell: first the oracle's, then any other that a device may take. `kinds`: what the
+/// cell may be, the same way round.
+std::vector<Way> ways(std::span<const CellKind> kinds, const Taps& taps, double jitter);
 
 }  // namespace dermis::oracle

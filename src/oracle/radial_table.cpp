@@ -7,67 +7,74 @@ namespace dermis::oracle {
 
 namespace {
 
-constexpr double interpolation_roundings = 4;  // position in the interval, difference, product, sum
+/// One parabola of one channel, over 0 <= t <= 1.
+struct Parabola {
+  double a;
+  double b;
+  double c;
 
-/// Where a squared distance lies between the nodes: at `share` of the way from node `node` to the next.
+  Parabola(const RadialTable& table, int channel, int octave)
+      : a(static_cast<double>(table.coefficients[channel][0][octave])),
+        b(static_cast<double>(table.coefficients[channel][1][octave])),
+        c(static_cast<double>(table.coefficients[channel][2][octave])) {}
+
+  double at(double t) const { return a + t * (b + t * c); }
+
+  // The bound takes the largest of each summand over first..last, at an end or at the vertex, which value and value - a
+  // share. t itself is exact. Unfused, t c is off by u |t c| and b + t c by u of itself, both of which count t times;
+  // then there are the product with t and the sum with a. Fused there are fewer. Second order in u is below 1e-6 of
+  // that, and each of five steps, loading a coefficient included, may be flushed to zero.
+  double largest_error(double value, double first, double last) const {
+    double distance = 0;
+    double magnitude = 0;
+    double rise = 0;
+    const double vertex = -b / (2 * c);  // not a number or infinite for a line
+    for (const double t : {first, last, vertex > first && vertex < last ? vertex : first}) {
+      distance = std::max(distance, std::abs(at(t) - value));
+      magnitude = std::max(magnitude, std::abs(at(t)));
+      rise = std::max(rise, std::abs(at(t) - a));
+    }
+    const double first_order = magnitude + 2 * rise + last * last * std::abs(c);
+    return distance + unit_roundoff * first_order * (1 + 1e-6) + 5 * smallest_normal;
+  }
+};
+
+/// Where a fourth power of distance lies: before the first octave at the start of it, beyond the last at the end of
+/// that.
 struct Position {
-  int node;  ///< -1 before the first
-  double share;
+  int octave;
+  double t;
 };
 
-Position position(const RadialTable& table, double r2) {
-  const int last = static_cast<int>(table.values.size()) - 1;
-  if (!(r2 > 0)) return {-1, 0};
-  if (std::isinf(r2)) return {last, 0};
+Position position(const RadialTable& table, double r4) {
+  constexpr int last = RadialTable::octaves - 1;
+  if (!(r4 > 0)) return {0, 0};
+  if (std::isinf(r4)) return {last, 1};
   int exponent = 0;
-  const double mantissa = 2 * std::frexp(r2, &exponent) - 1;
+  const double t = 2 * std::frexp(r4, &exponent) - 1;
   const int octave = exponent - 1 - table.first_exponent;
-  if (octave < 0) return {-1, 0};
-  const int nodes_per_octave = 1 << table.log2_nodes_per_octave;
-  const double in_octave = mantissa * nodes_per_octave;
-  const int node = octave * nodes_per_octave + static_cast<int>(in_octave);
-  if (node >= last) return {last, 0};
-  return {node, in_octave - std::floor(in_octave)};
+  if (octave < 0) return {0, 0};
+  if (octave > last) return {last, 1};
+  return {octave, t};
 }
-
-/// One channel of a table.
-class Curve {
- public:
-  Curve(const RadialTable& table, int channel) : table_(table), channel_(channel) {}
-
-  double at(Position p) const {
-    const double value = at_node(p.node);
-    return p.share == 0 ? value : value + p.share * (at_node(p.node + 1) - value);
-  }
-
-  double at_node(int i) const {
-    const int last = static_cast<int>(table_.values.size()) - 1;
-    return static_cast<double>(table_.values[std::clamp(i, 0, last)][channel_]);
-  }
-
- private:
-  const RadialTable& table_;
-  int channel_;
-};
 
 }  // namespace
 
-// The curve is piecewise linear, so over [r2 - error, r2 + error] it is extreme at the ends or at the nodes between
-// them.
-Bounded look_up(const RadialTable& table, int channel, Bounded r2) {
-  if (table.values.empty()) return {};
-  const Curve curve(table, channel);
-  const Position middle = position(table, r2.value);
-  const double value = curve.at(middle);
+// Neighbouring parabolas meet but for the rounding of their coefficients: an octave's boundary within the error of r4
+// counts with both. A device may keep r4 below the end of the last octave, where the largest float32 has t = 1 - 2 u.
+Bounded look_up(const RadialTable& table, int channel, Bounded r4) {
+  const Position middle = position(table, r4.value);
+  const double value = Parabola(table, channel, middle.octave).at(middle.t);
+  const Position high = position(table, r4.high());
+  Position low = position(table, r4.low());
+  if (low.octave == RadialTable::octaves - 1) low.t = std::min(low.t, 1 - 2 * unit_roundoff);
   double error = 0;
-  if (r2.error > 0) {
-    const Position low = position(table, r2.low());
-    const Position high = position(table, r2.high());
-    error = std::max(std::abs(curve.at(low) - value), std::abs(curve.at(high) - value));
-    for (int i = low.node + 1; i <= high.node; ++i) error = std::max(error, std::abs(curve.at_node(i) - value));
+  for (int octave = low.octave; octave <= high.octave; ++octave) {
+    const double first = octave == low.octave ? low.t : 0;
+    const double last = octave == high.octave ? high.t : 1;
+    error = std::max(error, Parabola(table, channel, octave).largest_error(value, first, last));
   }
-  const double scale = std::max(std::abs(curve.at_node(middle.node)), std::abs(curve.at_node(middle.node + 1)));
-  return {value, error + interpolation_roundings * unit_roundoff * scale};
+  return {value, error};
 }
 
 }  // namespace dermis::oracle

@@ -6,7 +6,7 @@
 
 namespace dermis::oracle {
 
-/// The value at the squared distance r2 for one channel, in the table's own unit.
-Bounded look_up(const RadialTable& table, int channel, Bounded r2);
+/// The value at the distance r for one channel, in the table's own unit; r4 = r^4.
+Bounded look_up(const RadialTable& table, int channel, Bounded r4);
 
 }  // namespace dermis::oracle

@@ -15,8 +15,8 @@ BoundedPicture result(const Surface& surface, const Light& light, const BoundedP
       for (int c = 0; c < 3; ++c) {
         const Bounded before = light.beauty(x, y, c);
         const Bounded after = light.recomposed(x, y, c, scattered.at(x, y, c));
-        Bounded value = pixel.touched ? after : before;
-        if (pixel.touched_unsure) value.error = std::abs(after.value - before.value) + after.error;
+        Bounded value = pixel.takes_light() ? after : before;
+        if (pixel.takes_light_unsure()) value.error = std::abs(after.value - before.value) + after.error;
         result.set(x, y, c, value);
       }
     }

@@ -13,6 +13,8 @@ inline constexpr double unit_roundoff = 0x1p-24;
 inline constexpr double smallest_normal = std::numeric_limits<float>::min();
 /// OpenCL allows 2.5 ulp for a division, that is 5 roundings; one more if the device multiplies by a reciprocal.
 inline constexpr double division_roundings = 6;
+/// OpenCL allows 3 ulp for a square root.
+inline constexpr double square_root_roundings = 6;
 /// OpenCL allows 16 ulp for pow.
 inline constexpr double power_roundings = 32;
 
@@ -57,6 +59,13 @@ inline Bounded operator/(Bounded a, Bounded b) {
   const double smallest_divisor = std::abs(b.value) - b.error;
   if (smallest_divisor <= 0) return {value, std::numeric_limits<double>::infinity()};
   return rounded({value, (a.error + std::abs(value) * b.error) / smallest_divisor}, division_roundings);
+}
+
+inline Bounded absolute(Bounded a) { return {std::abs(a.value), a.error}; }
+
+inline Bounded square_root(Bounded a) {
+  const double value = std::sqrt(a.value);
+  return rounded({value, value > 0 ? a.error / value : std::sqrt(a.error)}, square_root_roundings);
 }
 
 /// The larger one: whichever the device takes, it is no further off than the worse of the two.

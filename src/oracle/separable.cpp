@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "dermis/oracle/reference.hpp"
+#include "oracle/cell.hpp"
 #include "oracle/choice.hpp"
 #include "oracle/frame_images.hpp"
 #include "oracle/light.hpp"
@@ -18,8 +19,6 @@
 namespace dermis::oracle {
 
 namespace {
-
-constexpr int span_px = 16;
 
 using Values = std::array<Bounded, 3>;
 using Outcome = std::vector<Values>;  ///< of a pass at a pixel: of each term, or the only one of the sum over terms
@@ -53,10 +52,11 @@ Bounded scaled_sum(const Outcome& values, std::span<const Term> terms, int c) {
 /// and makes one picture of the sum over terms.
 class Pass {
  public:
-  Pass(Axis axis, const Surface& surface, std::span<const Material> materials, const Frame& frame,
+  Pass(Axis axis, const Surface& surface, const Cells& cells, std::span<const Material> materials, const Frame& frame,
        const Options& options, const BoundedPicture& light)
       : axis_(axis),
         surface_(surface),
+        cells_(cells),
         materials_(materials),
         camera_(frame.camera),
         options_(options),
@@ -66,19 +66,19 @@ class Pass {
   void run(std::span<const BoundedPicture> inputs, std::span<BoundedPicture> outputs);
 
  private:
-  Bounded span_footprint(int start, int y) const;
   std::span<const Term> terms_of(int x, int y) const { return materials_[surface_.at(x, y).material].taps.terms; }
   Values input(std::size_t term, int x, int y) const;
-  Outcome at(int x, int y, Bounded span_footprint);
+  Outcome at(int x, int y, std::span<const CellKind> kinds);
   Outcome source(int x, int y) const;
   Outcome without_taps(int x, int y) const;
-  Outcome with_taps(int x, int y, const Rung& rung, int rotated);
+  Outcome with_taps(int x, int y, const Way& way);
   void add_center(int x, int y, const TapWeights& weights);
   void add_tap(int x, int y, int tap_x, int tap_y, const TapWeights& weights, std::size_t pair);
   Outcome finished(const Outcome& values, std::span<const Term> terms) const;
 
   Axis axis_;
   const Surface& surface_;
+  const Cells& cells_;
   std::span<const Material> materials_;
   Camera camera_;
   const Options& options_;
@@ -89,34 +89,18 @@ class Pass {
 
 void Pass::run(std::span<const BoundedPicture> inputs, std::span<BoundedPicture> outputs) {
   inputs_ = inputs;
-  for (int y = 0; y < surface_.height(); ++y) {
-    for (int start = 0; start < surface_.width(); start += span_px) {
-      const Bounded footprint = span_footprint(start, y);
-      for (int x = start; x < std::min(start + span_px, surface_.width()); ++x) {
-        if (surface_.at(x, y).material < 0) continue;
-        const Outcome outcome = at(x, y, footprint);
+  for (int row = 0; row < cells_.rows(); ++row) {
+    for (int column = 0; column < cells_.columns(); ++column) {
+      const std::vector<CellKind> kinds = cells_.kinds(axis_, column, row);
+      cells_.for_each_pixel(column, row, [&](int x, int y) {
+        if (!surface_.at(x, y).gives_light()) return;
+        const Outcome outcome = at(x, y, kinds);
         for (std::size_t t = 0; t < outcome.size(); ++t) {
           for (int c = 0; c < 3; ++c) outputs[t].set(x, y, c, outcome[t][c]);
         }
-      }
+      });
     }
   }
-}
-
-// The maximum over the pixels that a device surely scatters is its lower bound, that over those it may scatter the
-// upper.
-Bounded Pass::span_footprint(int start, int y) const {
-  double low = 0;
-  double nominal = 0;
-  double high = 0;
-  for (int x = start; x < std::min(start + span_px, surface_.width()); ++x) {
-    const SurfacePixel& pixel = surface_.at(x, y);
-    const Bounded footprint = pixel.effective_footprint[axis_];
-    if (pixel.touched) nominal = std::max(nominal, footprint.value);
-    if (pixel.touched && !pixel.touched_unsure) low = std::max(low, footprint.low());
-    if (pixel.touched || pixel.touched_unsure) high = std::max(high, footprint.high());
-  }
-  return {nominal, std::max(high - nominal, nominal - low)};
 }
 
 Values Pass::input(std::size_t term, int x, int y) const {
@@ -126,26 +110,15 @@ Values Pass::input(std::size_t term, int x, int y) const {
 }
 
 // Where a decision is too close for float32, every outcome is within the bound.
-Outcome Pass::at(int x, int y, Bounded span_footprint) {
+Outcome Pass::at(int x, int y, std::span<const CellKind> kinds) {
   const SurfacePixel& pixel = surface_.at(x, y);
-  if (!pixel.touched && !pixel.touched_unsure) return source(x, y);
-  const Taps& taps = materials_[pixel.material].taps;
-  const Choice rung = rung_choice(span_footprint, taps);
-  const auto outcome = [&](int index, int rotated) {
-    return index < 0 ? without_taps(x, y) : with_taps(x, y, taps.rungs[index], rotated);
-  };
-  const auto rotated = [&](int index) {
-    return index < 0 ? Choice{0, 0, 0} : rotated_choice(taps.rungs[index], taps, options_.jitter);
-  };
-  Outcome result = pixel.touched ? outcome(rung.nominal, rotated(rung.nominal).nominal) : source(x, y);
-  if (pixel.touched_unsure) admit(result, source(x, y));
-  for (int index = rung.lowest; index <= rung.highest; ++index) {
-    const Choice turned = rotated(index);
-    for (int count = turned.lowest; count <= turned.highest; ++count) {
-      const bool is_nominal = pixel.touched && index == rung.nominal && count == turned.nominal;
-      if (!is_nominal) admit(result, outcome(index, count));
-    }
-  }
+  const bool takes = pixel.takes_light();
+  if (!takes && !pixel.takes_light_unsure()) return source(x, y);
+  const std::vector<Way> all = ways(kinds, materials_[pixel.material].taps, options_.jitter);
+  const auto outcome = [&](const Way& way) { return way.rung < 0 ? without_taps(x, y) : with_taps(x, y, way); };
+  Outcome result = takes ? outcome(all.front()) : source(x, y);
+  if (pixel.takes_light_unsure()) admit(result, source(x, y));
+  for (std::size_t i = takes ? 1 : 0; i < all.size(); ++i) admit(result, outcome(all[i]));
   return result;
 }
 
@@ -169,10 +142,11 @@ Outcome Pass::without_taps(int x, int y) const {
   return finished(values, terms);
 }
 
-Outcome Pass::with_taps(int x, int y, const Rung& rung, int rotated) {
+Outcome Pass::with_taps(int x, int y, const Way& way) {
   const SurfacePixel& pixel = surface_.at(x, y);
   const Taps& taps = materials_[pixel.material].taps;
-  const TapWeights weights(axis_, pixel, taps, rung);
+  const Rung& rung = taps.rungs[way.rung];
+  const TapWeights weights(axis_, pixel, taps, rung, way.flat_part);
   sums_.resize(taps.terms.size());
   for (auto& sum : sums_) {
     for (WeightedSum& channel : sum) channel.clear();
@@ -182,7 +156,7 @@ Outcome Pass::with_taps(int x, int y, const Rung& rung, int rotated) {
   for (std::size_t i = 0; i < rung.offsets_px.size(); ++i) {
     PixelOffset offset{0, 0};
     offset[axis_] = rung.offsets_px[i];
-    if (static_cast<int>(i) < rotated) offset = turned.offset(rung.offsets_px[i]);
+    if (static_cast<int>(i) < way.rotated) offset = turned.offset(rung.offsets_px[i]);
     add_tap(x, y, x + offset[0], y + offset[1], weights, i);
     add_tap(x, y, x - offset[0], y - offset[1], weights, i);
   }
@@ -209,7 +183,9 @@ void Pass::add_center(int x, int y, const TapWeights& weights) {
 
 void Pass::add_tap(int x, int y, int tap_x, int tap_y, const TapWeights& weights, std::size_t pair) {
   if (!surface_.shows(surface_.at(x, y).material, tap_x, tap_y)) return;
-  const TapWeights::Place place = weights.place(surface_.at(tap_x, tap_y));
+  const SurfacePixel& tap = surface_.at(tap_x, tap_y);
+  if (!tap.gives_light()) return;
+  const TapWeights::Place place = weights.place(tap);
   for (std::size_t t = 0; t < sums_.size(); ++t) {
     for (int c = 0; c < 3; ++c) sums_[t][c].add(weights.tap(place, pair, t, c), inputs_[t].at(tap_x, tap_y, c));
   }
@@ -220,6 +196,12 @@ Outcome Pass::finished(const Outcome& values, std::span<const Term> terms) const
   Values sums;
   for (int c = 0; c < 3; ++c) sums[c] = scaled_sum(values, terms, c);
   return {sums};
+}
+
+/// No pixel has a width of its own and no tap is rotated.
+bool may_be_flat(const FrameImages& images, std::span<const Material> materials, const Options& options) {
+  return !is_there(images.mask) && options.jitter == 0 &&
+         std::none_of(materials.begin(), materials.end(), [](const Material& m) { return m.width_follows_albedo; });
 }
 
 std::size_t most_terms(std::span<const Material> materials) {
@@ -233,13 +215,14 @@ std::size_t most_terms(std::span<const Material> materials) {
 Reference separable(const Frame& frame, std::span<const Material> materials, const Options& options) {
   const FrameImages images = read_images(frame);
   const Surface surface(frame, images, materials);
+  const Cells cells(surface, materials, may_be_flat(images, materials, options));
   const Light light(images, options);
   const BoundedPicture x = light.filtered();
   const std::vector<BoundedPicture> lights(most_terms(materials), x);
   std::vector<BoundedPicture> across = lights;
-  Pass(horizontal, surface, materials, frame, options, x).run(lights, across);
+  Pass(horizontal, surface, cells, materials, frame, options, x).run(lights, across);
   BoundedPicture scattered = x;
-  Pass(vertical, surface, materials, frame, options, x).run(across, std::span(&scattered, 1));
+  Pass(vertical, surface, cells, materials, frame, options, x).run(across, std::span(&scattered, 1));
   return recompose(surface, light, scattered);
 }
 

@@ -33,23 +33,32 @@ bool is_finite_at(const Picture& picture, int x, int y) {
   return true;
 }
 
-bool is_lit_surface(const FrameImages& images, const View& view, int x, int y) {
+bool is_surface(const FrameImages& images, const View& view, int x, int y) {
   if (is_there(images.depth)) {
     const double depth = images.depth(x, y);
     if (!std::isfinite(depth) || depth >= background_depth || (view.is_perspective() && depth <= 0)) return false;
   }
-  if (is_there(images.mask) && !(std::isfinite(images.mask(x, y)) && images.mask(x, y) > 0)) return false;
-  if (is_there(images.albedo) && !is_finite_at(images.albedo, x, y)) return false;
-  return is_finite_at(images.light, x, y);
+  return !is_there(images.mask) || (std::isfinite(images.mask(x, y)) && images.mask(x, y) > 0);
 }
 
-int material_at(const FrameImages& images, std::span<const Material> materials, int x, int y) {
+bool has_albedo(const FrameImages& images, int x, int y) {
+  return !is_there(images.albedo) || is_finite_at(images.albedo, x, y);
+}
+
+int material_by_id(const FrameImages& images, std::span<const Material> materials, int x, int y) {
   if (!is_there(images.material)) return 0;
   const double id = images.material(x, y);
   for (std::size_t m = 0; m < materials.size(); ++m) {
     if (std::abs(id - materials[m].id) <= id_tolerance) return static_cast<int>(m);
   }
   return -1;
+}
+
+/// Where the width follows an albedo that is not finite, the pixel's kernel is unknown and it has no material.
+int material_at(const FrameImages& images, const View& view, std::span<const Material> materials, int x, int y) {
+  if (!is_surface(images, view, x, y)) return -1;
+  const int m = material_by_id(images, materials, x, y);
+  return m >= 0 && materials[m].width_follows_albedo && !has_albedo(images, x, y) ? -1 : m;
 }
 
 /// s(A) of Christensen and Burley 2015, eq. 6.
@@ -72,12 +81,12 @@ Bounded widest(const std::array<Bounded, 3>& width_factor, const Taps& taps) {
   return result;
 }
 
-void decide_touched(SurfacePixel& pixel, const Taps& taps) {
+void decide_wide(SurfacePixel& pixel, const Taps& taps) {
   const Bounded radius_px =
       larger(pixel.effective_footprint[horizontal], pixel.effective_footprint[vertical]) * as_float(taps.radius_mm);
   const auto narrow = static_cast<double>(Taps::min_radius_px);
-  pixel.touched = radius_px.value >= narrow;
-  pixel.touched_unsure = radius_px.low() < narrow && radius_px.high() >= narrow;
+  pixel.wide = radius_px.value >= narrow;
+  pixel.wide_unsure = radius_px.low() < narrow && radius_px.high() >= narrow;
 }
 
 }  // namespace
@@ -88,10 +97,10 @@ Surface::Surface(const Frame& frame, const FrameImages& images, std::span<const 
   pixels_.resize(static_cast<std::size_t>(width_) * height_);
   for (int y = 0; y < height_; ++y) {
     for (int x = 0; x < width_; ++x) {
-      if (!is_lit_surface(images, view_, x, y)) continue;
       SurfacePixel& pixel = pixels_[static_cast<std::size_t>(y) * width_ + x];
-      pixel.material = material_at(images, materials, x, y);
+      pixel.material = material_at(images, view_, materials, x, y);
       if (pixel.material < 0) continue;
+      pixel.bad = !is_finite_at(images.light, x, y) || !has_albedo(images, x, y);
       const Material& material = materials[pixel.material];
       const Bounded z_mm = is_there(images.depth) ? view_.depth_mm(images.depth(x, y)) : exact(0);
       pixel.position_mm = view_.position(x, y, z_mm);
@@ -101,7 +110,7 @@ Surface::Surface(const Frame& frame, const FrameImages& images, std::span<const 
         pixel.footprint[axis] = view_.footprint(axis, z_mm);
         pixel.effective_footprint[axis] = pixel.footprint[axis] * spread;
       }
-      decide_touched(pixel, material.taps);
+      decide_wide(pixel, material.taps);
     }
   }
   for (int y = 0; y < height_; ++y) {
@@ -111,16 +120,6 @@ Surface::Surface(const Frame& frame, const FrameImages& images, std::span<const 
     }
   }
 }
-
-namespace {
-
-Bounded square_root(Bounded a) {
-  constexpr double roundings = 6;  // OpenCL allows 3 ulp
-  const double value = std::sqrt(a.value);
-  return rounded({value, value > 0 ? a.error / value : std::sqrt(a.error)}, roundings);
-}
-
-}  // namespace
 
 Bounded Surface::depth_slope(int x, int y, Axis axis) const {
   const int dx = axis == horizontal ? 1 : 0;
@@ -146,7 +145,7 @@ Bounded Surface::segment(int x, int y, Axis axis) const {
   Bounded sum = slope * slope;
   for (const Axis i : {horizontal, vertical}) {
     const Bounded ray = view_.is_perspective() ? pixel.position_mm[i] / pixel.position_mm[2] : exact(0);
-    const Bounded change = i == axis ? ray * slope + exact(1) / pixel.footprint[i] : ray * slope;
+    const Bounded change = i == axis ? ray * slope + view_.size_mm(i, pixel.position_mm[2]) : ray * slope;
     sum = sum + change * change;
   }
   return square_root(sum);
@@ -155,7 +154,7 @@ Bounded Surface::segment(int x, int y, Axis axis) const {
 Picture Surface::touched() const {
   Picture touched(width_, height_, 1);
   for (int y = 0; y < height_; ++y) {
-    for (int x = 0; x < width_; ++x) touched(x, y) = at(x, y).touched ? 1 : 0;
+    for (int x = 0; x < width_; ++x) touched(x, y) = at(x, y).takes_light() ? 1 : 0;
   }
   return touched;
 }

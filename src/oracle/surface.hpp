@@ -15,14 +15,19 @@ namespace dermis::oracle {
 
 /// One pixel. Where there is no material, nothing else is known.
 struct SurfacePixel {
-  int material = -1;            ///< index into the materials; -1: none, neither gives nor takes light
-  bool touched = false;         ///< takes light: has a material and its kernel is at least half a pixel wide
-  bool touched_unsure = false;  ///< so close to half a pixel that a float32 device may decide otherwise
+  int material = -1;         ///< index into the materials, by id, depth and mask; -1: none
+  bool bad = false;          ///< light or albedo not finite: part of the surface, but neither gives nor takes light
+  bool wide = false;         ///< has a kernel at least half a pixel wide
+  bool wide_unsure = false;  ///< so close to half a pixel that a float32 device may decide otherwise
   std::array<Bounded, 3> position_mm{};
   std::array<Bounded, 2> footprint{};            ///< px per mm along x and y
   std::array<Bounded, 3> width_factor{};         ///< k: the profile is R(r / k) / k^2
   std::array<Bounded, 2> segment_mm{};           ///< length of surface that the pixel spans along x and y
   std::array<Bounded, 2> effective_footprint{};  ///< footprint times the widest channel's k, px per mm
+
+  bool gives_light() const { return material >= 0 && !bad; }
+  bool takes_light() const { return wide && !bad; }
+  bool takes_light_unsure() const { return wide_unsure && !bad; }
 };
 
 class Surface {
@@ -37,7 +42,7 @@ class Surface {
 
   const SurfacePixel& at(int x, int y) const { return pixels_[static_cast<std::size_t>(y) * width_ + x]; }
 
-  /// True if the pixel is in the image and of that material.
+  /// True if the pixel is in the image and of that material, bad or not.
   bool shows(int material, int x, int y) const {
     return x >= 0 && y >= 0 && x < width_ && y < height_ && at(x, y).material == material;
   }
@@ -46,7 +51,7 @@ class Surface {
   /// material, 0 if they differ in sign.
   Bounded depth_slope(int x, int y, Axis axis) const;
 
-  /// 1 channel: 1 where touched.
+  /// 1 channel: 1 where a pixel takes light.
   Picture touched() const;
 
  private:

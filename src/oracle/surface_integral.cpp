@@ -86,7 +86,7 @@ class SampledSurface {
     samples_.resize(static_cast<std::size_t>(surface.width()) * surface.height());
     for (int y = 0; y < surface.height(); ++y) {
       for (int x = 0; x < surface.width(); ++x) {
-        if (surface.at(x, y).material < 0) continue;
+        if (!surface.at(x, y).gives_light()) continue;
         const Patch patch(surface, x, y);
         for (const auto& rule : rules_) samples_[index(x, y)].push_back(sample(patch, rule));
       }
@@ -120,7 +120,8 @@ class Integral {
         pixels_(materials.size()) {
     for (int y = 0; y < surface.height(); ++y) {
       for (int x = 0; x < surface.width(); ++x) {
-        if (surface.at(x, y).material >= 0) pixels_[surface.at(x, y).material].push_back({x, y});
+        const SurfacePixel& pixel = surface.at(x, y);
+        if (pixel.gives_light()) pixels_[pixel.material].push_back({x, y});
       }
     }
   }
@@ -201,7 +202,7 @@ Reference surface_integral(const Frame& frame, std::span<const Material> materia
   const Integral integral(surface, materials, x, finer);
   for (int j = 0; j < surface.height(); ++j) {
     for (int i = 0; i < surface.width(); ++i) {
-      if (!surface.at(i, j).touched) continue;
+      if (!surface.at(i, j).takes_light()) continue;
       const std::array<double, 3> values = integral.at({i, j});
       for (int c = 0; c < 3; ++c) scattered.value(i, j, c) = values[c];
     }

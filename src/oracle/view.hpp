@@ -24,6 +24,15 @@ class View {
   /// Pixels per mm along an axis.
   Bounded footprint(Axis axis, Bounded z_mm) const;
 
+  /// Width or height of a pixel, mm: the inverse of footprint().
+  Bounded size_mm(Axis axis, Bounded z_mm) const;
+
+  /// How much of size_mm() comes with a part of the depth.
+  Bounded growth_mm(Axis axis, Bounded dz_mm) const;
+
+  /// Change of x or y with depth along the ray that is seen at x or y = `place_px`.
+  Bounded ray(Axis axis, double place_px) const;
+
   /// The point at depth z_mm that is seen at (x_px, y_px).
   Vec3 unproject(double x_px, double y_px, double z_mm) const;
 

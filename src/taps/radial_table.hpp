@@ -1,4 +1,4 @@
-// Functions of distance as tables that a kernel reads from the squared distance.
+// Functions of distance as tables that a kernel evaluates from the squared distance.
 #pragma once
 
 #include <functional>
@@ -7,13 +7,13 @@
 
 namespace dermis {
 
-/// Tabulates f(channel, r) for r_min <= r <= r_max (both widened to whole octaves of r^2, r_max to the next node).
-/// The last node holds f(infinity).
-/// Relative error between nodes: about (r^2 / nodes)^2 f'' / (8 f), derivatives with respect to r^2.
-RadialTable tabulate(const std::function<double(int, double)>& f, double r_min_mm, double r_max_mm,
-                     int log2_nodes_per_octave);
+/// Tabulates f(channel, r) in the octaves of r^4 up to the one that holds r_max, at the end of which the value is
+/// f(infinity), and one more.
+/// Each parabola meets f at both ends of its octave and in the middle; but if f is nowhere negative, neither is the
+/// parabola: where f falls too steeply its middle value is raised.
+RadialTable tabulate(const std::function<double(int, double)>& f, double r_max_mm);
 
-/// The value of a table at a squared distance, as a kernel computes it.
-double value_at(const RadialTable& table, int channel, double r_squared);
+/// The value of a table at r, as a kernel computes it.
+double value_at(const RadialTable& table, int channel, double r);
 
 }  // namespace dermis

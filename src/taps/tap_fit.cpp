@@ -281,6 +281,13 @@ PlacedTaps fit_taps(const std::array<ChannelOnPixels, 3>& channels, std::vector<
       MatrixXd all(pairs.rows() + 1, pairs.cols());
       all.bottomRows(pairs.rows()) = pairs;
       all.row(0) = sums[c].transpose() - 2 * pairs.colwise().sum();
+      for (Index t = 0; t < all.cols(); ++t) {
+        // The pairs are not negative, but may leave less than nothing for the centre.
+        const double least_centre = 1e-5 * sums[c][t];
+        if (!non_negative[static_cast<std::size_t>(t)] || all(0, t) >= least_centre) continue;
+        all.col(t) *= (sums[c][t] - least_centre) / (sums[c][t] - all(0, t));
+        all(0, t) = least_centre;
+      }
       taps.weights[c] = share_of_new == 1 ? all : MatrixXd(share_of_new * all + (1 - share_of_new) * taps.weights[c]);
       beta[c] = responses_of(taps, c, channels[c].grid());
     }

@@ -17,18 +17,20 @@ namespace {
 constexpr int bits_below_rung = 23 - Taps::log2_rungs_per_octave;
 constexpr int rungs_per_octave = 1 << Taps::log2_rungs_per_octave;
 
+/// In whole multiples of 2^-24, which float32 adds without rounding.
+double in_quanta(double weight) {
+  constexpr double quantum = 0x1p-24;
+  return std::round(weight / quantum) * quantum;
+}
+
 /// The tables of one term, for radii up to radius_mm.
 Term make_term(const Profile& profile, const ModelTerm& model, double radius_mm) {
   Term term;
   term.normalised = model.normalised;
   for (int c = 0; c < 3; ++c) {
     term.scale[c] = static_cast<float>(model.scale[c]);
-    term.sum[c] = model.normalised ? 1 : static_cast<float>(model.functions[c].sum());
+    term.sum[c] = model.normalised ? 1 : static_cast<float>(in_quanta(model.functions[c].sum()));
   }
-  // 32 nodes per octave of r^2: linear interpolation is off by 6e-4 at most where the inner 2..99 % of the light are.
-  // The finest distance is that between pixels of the last rung; tilt stretches distances beyond the radius.
-  constexpr int log2_nodes_per_octave = 5;
-  const double finest_mm = radius_mm * std::ldexp(1.0, -Taps::octaves);
   const auto falloff = [&](int c, double r) {
     const double value = std::isinf(r) ? 0 : value_of(profile, c, model.functions[c], r);
     return model.normalised ? std::max(value, 0.0) : value;
@@ -37,8 +39,9 @@ Term make_term(const Profile& profile, const ModelTerm& model, double radius_mm)
     const TermFunction& f = model.functions[c];
     return f.sum() - (std::isinf(r) ? 0 : 2 * tail_of(profile, c, f, r));
   };
-  term.falloff = tabulate(falloff, finest_mm, 2 * radius_mm, log2_nodes_per_octave);
-  term.core = tabulate(core, finest_mm, 4 * radius_mm, log2_nodes_per_octave);
+  // Tilt stretches distances beyond the radius.
+  term.falloff = tabulate(falloff, 2 * radius_mm);
+  term.core = tabulate([&](int c, double root) { return core(c, root * root); }, std::sqrt(4 * radius_mm));
   return term;
 }
 
@@ -73,8 +76,62 @@ TapWeight follow(const std::array<double, 3>& weights, const std::array<double, 
   return result;
 }
 
-Rung make_rung(const SizedTaps& taps, const std::vector<Term>& terms, double footprint) {
-  Rung rung{static_cast<float>(footprint), static_cast<float>(taps.core_half_width_px), {}, {}, {}};
+/// The weights of a pass along a plane that is parallel to the screen, where a pixel is `stretch` times as large as the
+/// rung's: of all terms of the centre, then of the first pair, ... of one channel.
+std::vector<double> weights_on_plane(const Rung& rung, const std::vector<Term>& terms, int c, double stretch) {
+  const double pixel_mm = stretch / static_cast<double>(rung.footprint);
+  const double core_mm = static_cast<double>(rung.core_half_width_px) * pixel_mm;
+  std::vector<double> weights;
+  for (std::size_t t = 0; t < terms.size(); ++t) {
+    weights.push_back(static_cast<double>(rung.core_gain[t][c]) * value_at(terms[t].core, c, std::sqrt(core_mm)));
+  }
+  for (std::size_t i = 0; i < rung.offsets_px.size(); ++i) {
+    const double r_mm = rung.offsets_px[i] * pixel_mm;
+    for (std::size_t t = 0; t < terms.size(); ++t) {
+      const TapWeight& its = rung.weights[i * terms.size() + t];
+      double weight = static_cast<double>(its.length_mm[c]) * stretch * value_at(terms[t].falloff, c, r_mm);
+      if (t > 0) weight += static_cast<double>(its.share[c]) * weights[(i + 1) * terms.size()];
+      weights.push_back(weight);
+    }
+  }
+  return weights;
+}
+
+/// The fitted weights of a rung, changed as those of a pass change with the size of a pixel, in quanta that sum to what
+/// they should.
+std::vector<std::array<float, 3>> make_flat_weights(const Rung& rung, const std::vector<Term>& terms,
+                                                    const PlacedTaps& placed, double stretch) {
+  const std::size_t rows = rung.offsets_px.size() + 1;
+  std::vector<std::array<float, 3>> result(rows * terms.size());
+  for (int c = 0; c < 3; ++c) {
+    const std::vector<double> here = weights_on_plane(rung, terms, c, stretch);
+    const std::vector<double> nominal = weights_on_plane(rung, terms, c, 1);
+    for (std::size_t t = 0; t < terms.size(); ++t) {
+      std::vector<double> weights(rows);
+      double total = 0;
+      for (std::size_t row = 0; row < rows; ++row) {
+        const std::size_t at = row * terms.size() + t;
+        const double fitted = placed.weights[c](static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(t));
+        weights[row] = fitted + here[at] - nominal[at];
+        if (terms[t].normalised) weights[row] = std::max(weights[row], 0.0);
+        total += row == 0 ? weights[row] : 2 * weights[row];
+      }
+      const double scale = terms[t].normalised && total > 0 ? 1 / total : 1;
+      double pairs = 0;
+      for (std::size_t row = 1; row < rows; ++row) {
+        const double weight = in_quanta(weights[row] * scale);
+        result[row * terms.size() + t][c] = static_cast<float>(weight);
+        pairs += 2 * weight;
+      }
+      result[t][c] = static_cast<float>(static_cast<double>(terms[t].sum[c]) - pairs);
+    }
+  }
+  return result;
+}
+
+/// `step`: between rungs, as a share of the footprint.
+Rung make_rung(const SizedTaps& taps, const std::vector<Term>& terms, double footprint, double step) {
+  Rung rung{static_cast<float>(footprint), static_cast<float>(taps.core_half_width_px), {}, {}, {}, {}};
   const double core_mm = rung.core_half_width_px / footprint;
   const auto weights_of = [&](std::size_t row, std::size_t t) {
     std::array<double, 3> weights;
@@ -87,7 +144,7 @@ Rung make_rung(const SizedTaps& taps, const std::vector<Term>& terms, double foo
     const std::array<double, 3> weights = weights_of(0, t);
     std::array<float, 3> gain{};
     for (int c = 0; c < 3; ++c) {
-      const double core = value_at(terms[t].core, c, core_mm * core_mm);
+      const double core = value_at(terms[t].core, c, std::sqrt(core_mm));
       if (terms[t].normalised && core > 0) gain[c] = static_cast<float>(weights[c] / core);
     }
     rung.core_gain.push_back(gain);
@@ -98,10 +155,16 @@ Rung make_rung(const SizedTaps& taps, const std::vector<Term>& terms, double foo
     const double distance_mm = offsets_px[i] / footprint;
     for (std::size_t t = 0; t < terms.size(); ++t) {
       std::array<double, 3> densities;
-      for (int c = 0; c < 3; ++c) densities[c] = value_at(terms[t].falloff, c, distance_mm * distance_mm);
+      for (int c = 0; c < 3; ++c) densities[c] = value_at(terms[t].falloff, c, distance_mm);
       rung.weights.push_back(follow(weights_of(i + 1, t), densities, weights_of(i + 1, 0),
                                     length_px(offsets_px, i) / footprint, terms[t].normalised));
     }
+  }
+  // Parts of the rung are equal steps of the kernel radius, and it was made for the middle.
+  for (std::size_t part = 0; part < rung.flat_weights.size(); ++part) {
+    const double position = static_cast<double>(part) / static_cast<double>(rung.flat_weights.size());
+    const double ratio = 1 + (position - 0.5) * step;
+    rung.flat_weights[part] = make_flat_weights(rung, terms, taps.placed, 1 / ratio);
   }
   return rung;
 }
@@ -158,7 +221,7 @@ Taps make_taps(const Profile& profile, const TapsDesign& design) {
         designed.at(1 / footprint, Fetch::integer, search, scaled(near_px, radius_px / previous_px));
     near_px = sized.placed.offsets_px;
     previous_px = radius_px;
-    taps.rungs.push_back(make_rung(sized, taps.terms, footprint));
+    taps.rungs.push_back(make_rung(sized, taps.terms, footprint, 1 / (rungs_per_octave * middle)));
   }
   return taps;
 }

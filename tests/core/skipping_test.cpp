@@ -13,6 +13,7 @@ using dermis::Frame;
 using dermis::FrameDescription;
 using dermis::Plan;
 using dermis::Stats;
+using dermis::TileKind;
 
 TEST_CASE("pixels without material and narrow kernels keep their bits and are counted", "[skipping]") {
   const Device device = Device::open();
@@ -47,18 +48,20 @@ TEST_CASE("pixels without material and narrow kernels keep their bits and are co
   frame.beauty = beauty.image();
   frame.scattered = scattered.output();
   frame.result = result.output();
-  const Plan plan(device, {{5, dermis::preset("skin").profile}}, FrameDescription::of(frame), {});
+  const Plan plan(device, {{5, dermis::preset("skin").profile}}, FrameDescription::of(frame),
+                  {.tile_width = 64, .tile_height = 32});
   const Stats stats = plan.run(frame);
 
   CHECK(stats.pixels == width * height);
   CHECK(stats.pixels_without_material == 64 * height);
   CHECK(stats.pixels_narrow == 64 * height);
   CHECK(stats.pixels_bad == 2);
-  CHECK(stats.pixels_scattered == (width - 128) * height - 2);
-  CHECK(stats.tiles == 4 * 3);
-  CHECK(stats.tiles_without_material == 3);
-  CHECK(stats.tiles_narrow == 3);
-  CHECK(stats.tiles_computed == 6);
+  CHECK(stats.pixels_scattered == (width - 128) * height);
+  CHECK(stats.tiles.columns == 4);
+  CHECK(stats.tiles.rows == 3);
+  CHECK(stats.count(TileKind::without_material) == 3);
+  CHECK(stats.count(TileKind::narrow) == 3);
+  CHECK(stats.count(TileKind::flat) + stats.count(TileKind::curved) == 6);
   long changed = 0;
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
@@ -110,7 +113,7 @@ TEST_CASE("progress goes to 1 and can stop a run", "[skipping]") {
   Frame frame{.width = 64, .height = 64, .light = {.host = light.data()}, .camera = Camera::orthographic(4, 4)};
   frame.scattered.host = scattered.data();
   const Plan plan(device, {{0, dermis::preset("skin").profile}}, FrameDescription::of(frame),
-                  {.method = dermis::Method::exact, .tile_height = 8});
+                  {.method = dermis::Method::exact});
   double last = 0;
   plan.run(frame, [&](double share) {
     CHECK(share > last);

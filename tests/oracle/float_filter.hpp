@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "dermis/oracle/reference.hpp"
+#include "float_cells.hpp"
 #include "float_surface.hpp"
 #include "made_frame.hpp"
 
@@ -29,7 +30,9 @@ class FloatFilter {
         materials_(materials),
         options_(options),
         style_(style),
-        pixels_(FloatSurface(made, materials, options).pixels) {
+        pixels_(FloatSurface(made, materials, options).pixels),
+        cells_{FloatCells(0, made, materials, options, pixels_, style.fused),
+               FloatCells(1, made, materials, options, pixels_, style.fused)} {
     std::vector<float> x;
     for (const FloatPixel& pixel : pixels_) x.insert(x.end(), pixel.x.begin(), pixel.x.end());
     scatter(x);
@@ -39,26 +42,38 @@ class FloatFilter {
   std::vector<float> scattered;
   std::vector<float> result;
 
+  /// Of both passes.
+  int flat_cells() const {
+    int count = 0;
+    for (const FloatCells& pass : cells_) {
+      for (const FloatCell& cell : pass.cells) count += cell.flat ? 1 : 0;
+    }
+    return count;
+  }
+
  private:
   float albedo(std::size_t i) const { return made_.albedo.empty() ? 1 : made_.albedo[i]; }
   bool raw() const { return options_.lighting == dermis::Lighting::raw; }
   float mix() const { return static_cast<float>(options_.albedo_mix); }
 
-  static float look_up(const dermis::RadialTable& table, std::size_t c, float r2) {
-    const int bits = static_cast<int>(std::bit_cast<std::uint32_t>(r2));
-    const int shift = 23 - table.log2_nodes_per_octave;
-    const int from_first = bits - ((table.first_exponent + 127) << 23);
-    if (from_first < 0) return table.values.front()[c];
-    const std::size_t i = static_cast<std::size_t>(from_first >> shift);
-    if (i + 1 >= table.values.size()) return table.values.back()[c];
-    const float share = static_cast<float>(from_first & ((1 << shift) - 1)) / static_cast<float>(1 << shift);
-    return table.values[i][c] + share * (table.values[i + 1][c] - table.values[i][c]);
+  float look_up(const dermis::RadialTable& table, std::size_t c, float r4) const {
+    const int bits = static_cast<int>(std::bit_cast<std::uint32_t>(r4));
+    const int from_first = std::max(bits - ((table.first_exponent + 127) << 23), 0);
+    std::size_t octave = static_cast<std::size_t>(from_first >> 23);
+    float t = static_cast<float>(from_first & 0x7FFFFF) / 0x1p23F;
+    if (octave >= dermis::RadialTable::octaves) {
+      octave = dermis::RadialTable::octaves - 1;
+      t = style_.backwards ? 1 : 1 - 0x1p-23F;  // the end of the last octave, or just before it
+    }
+    const auto& [a, b, bend] = table.coefficients[c];
+    return multiply_add(t, multiply_add(t, bend[octave], b[octave]), a[octave]);
   }
 
-  static std::size_t rung_of(float radius_px, const dermis::Taps& taps) {
-    const std::uint32_t steps =
-        (std::bit_cast<std::uint32_t>(radius_px) - std::bit_cast<std::uint32_t>(0.5F)) >> (23 - 4);
-    return std::min<std::size_t>(steps, taps.rungs.size() - 1);
+  /// Eighths of rungs.
+  static std::size_t step_of(float radius_px, bool flat, const dermis::Taps& taps) {
+    const std::uint32_t bits = std::bit_cast<std::uint32_t>(radius_px) - std::bit_cast<std::uint32_t>(0.5F);
+    const std::uint32_t steps = (bits + (flat ? 1U << 15 : 0)) >> (23 - 7);
+    return std::min<std::size_t>(steps, 8 * taps.rungs.size() - 1);
   }
 
   std::array<int, 2> turned(int axis, int x, int y, int offset) const {
@@ -89,12 +104,12 @@ class FloatFilter {
       const std::vector<float> both = pass(1, t, pass(0, t, x));
       for (std::size_t j = 0; j < x.size(); ++j) {
         const FloatPixel& pixel = pixels_[j / 3];
-        if (!pixel.touched || t >= taps_of(pixel).terms.size()) continue;
+        if (!pixel.touched() || t >= taps_of(pixel).terms.size()) continue;
         scattered[j] = multiply_add(taps_of(pixel).terms[t].scale[j % 3], both[j], scattered[j]);
       }
     }
     for (std::size_t j = 0; j < x.size(); ++j) {
-      if (!pixels_[j / 3].touched) scattered[j] = x[j];
+      if (!pixels_[j / 3].touched()) scattered[j] = x[j];
     }
   }
 
@@ -104,34 +119,34 @@ class FloatFilter {
     for (int y = 0; y < made_.height; ++y) {
       for (int x = 0; x < made_.width; ++x) {
         const std::size_t p = static_cast<std::size_t>(y) * made_.width + x;
-        if (pixels_[p].material < 0 || term >= taps_of(pixels_[p]).terms.size()) continue;
-        float widest = 0;
-        for (int i = x & ~15; i < std::min((x & ~15) + 16, made_.width); ++i) {
-          const FloatPixel& other = pixels_[static_cast<std::size_t>(y) * made_.width + i];
-          if (other.touched) widest = std::fmax(widest, other.footprint[axis] * other.spread);
-        }
-        gather(axis, x, y, term, widest, input, &output[3 * p]);
+        if (pixels_[p].material < 0 || pixels_[p].bad || term >= taps_of(pixels_[p]).terms.size()) continue;
+        gather(axis, x, y, term, input, &output[3 * p]);
       }
     }
     return output;
   }
 
-  void gather(int axis, int x, int y, std::size_t t, float widest, const std::vector<float>& input,
-              float* output) const {
+  void gather(int axis, int x, int y, std::size_t t, const std::vector<float>& input, float* output) const {
     const std::size_t p = static_cast<std::size_t>(y) * made_.width + x;
     const FloatPixel& pixel = pixels_[p];
     const dermis::Taps& taps = taps_of(pixel);
     const dermis::Term& term = taps.terms[t];
-    const float radius_px = widest * static_cast<float>(taps.radius_mm);
+    const FloatCell& cell = cells_[static_cast<std::size_t>(axis)].at(x, y);
+    const float radius_mm = static_cast<float>(taps.radius_mm);
+    const float radius_px = cell.flat ? radius_mm / cell.change_mm : cell.footprint * radius_mm;
     for (std::size_t c = 0; c < 3; ++c) {
       const float own = input[3 * p + c];
-      if (!pixel.touched || radius_px < 0.5F) {
+      if (!pixel.touched() || radius_px < 0.5F) {
         output[c] = term.normalised ? own : term.sum[c] * own;
         continue;
       }
-      const dermis::Rung& rung = taps.rungs[rung_of(radius_px, taps)];
+      const std::size_t step = step_of(radius_px, cell.flat, taps);
+      const dermis::Rung& rung = taps.rungs[step / 8];
+      const auto& flat_weights = rung.flat_weights[step % 8];
       float weights = 0;
-      if (term.normalised) {
+      if (term.normalised && cell.flat) {
+        weights = flat_weights[t][c];
+      } else if (term.normalised) {
         const float half_width = rung.core_half_width_px * pixel.segment[axis] / pixel.k[c];
         weights = rung.core_gain[t][c] * look_up(term.core, c, half_width * half_width);
       }
@@ -148,8 +163,9 @@ class FloatFilter {
           const int ty = y + sign * offset[1];
           if (tx < 0 || ty < 0 || tx >= made_.width || ty >= made_.height) continue;
           const std::size_t q = static_cast<std::size_t>(ty) * made_.width + tx;
-          if (pixels_[q].material != pixel.material) continue;
-          const float weight = weigh(axis, p, q, rung, i, t, c);
+          if (pixels_[q].material != pixel.material || pixels_[q].bad) continue;
+          const float weight =
+              cell.flat ? flat_weights[(i + 1) * taps.terms.size() + t][c] : weigh(axis, p, q, rung, i, t, c);
           const float light = input[3 * q + c];
           weights += weight;
           sum = multiply_add(weight, about_own ? light - own : light, sum);
@@ -173,7 +189,8 @@ class FloatFilter {
       const float d = pixels_[q].position[i] - pixel.position[i];
       r2 = multiply_add(d, d, r2);
     }
-    const float falloff = look_up(taps.terms[t].falloff, c, r2 / (pixel.k[c] * pixel.k[c]));
+    const float scaled = r2 / (pixel.k[c] * pixel.k[c]);
+    const float falloff = look_up(taps.terms[t].falloff, c, scaled * scaled);
     const float weight = rung.footprint * pixels_[q].segment[axis] * tap.length_mm[c] * falloff / pixel.k[c];
     return t == 0 ? weight : multiply_add(tap.share[c], weigh(axis, p, q, rung, pair, 0, c), weight);
   }
@@ -181,7 +198,7 @@ class FloatFilter {
   void compose() {
     result = made_.beauty;
     for (std::size_t i = 0; i < result.size(); ++i) {
-      if (!pixels_[i / 3].touched) continue;
+      if (!pixels_[i / 3].touched()) continue;
       const float rho = albedo(i);
       const float light = made_.light[i];
       if (mix() == 0 && raw()) {
@@ -197,4 +214,5 @@ class FloatFilter {
   dermis::Options options_;
   FloatStyle style_;
   std::vector<FloatPixel> pixels_;
+  std::array<FloatCells, 2> cells_;
 };

@@ -11,13 +11,16 @@
 
 struct FloatPixel {
   int material = -1;
-  bool touched = false;
+  bool bad = false;
+  bool wide = false;
   std::array<float, 3> position{};
   std::array<float, 2> footprint{};
   std::array<float, 2> segment{};
   std::array<float, 3> k{};
   float spread = 0;
   std::array<float, 3> x{};
+
+  bool touched() const { return wide && !bad; }
 };
 
 class FloatSurface {
@@ -41,6 +44,7 @@ class FloatSurface {
     for (std::size_t c = 0; c < 3; ++c) {
       const float rho = albedo(3 * i + c);
       const float light = made_.light[3 * i + c];
+      pixel.bad = pixel.bad || !std::isfinite(light);
       pixel.x[c] = raw() ? light : (rho >= 1e-4F ? light / rho : 0);
       if (mix() > 0) pixel.x[c] *= std::pow(std::fmax(rho, 0.0F), mix());
     }
@@ -72,7 +76,7 @@ class FloatSurface {
       pixel.spread = std::fmax(pixel.spread, pixel.k[c] * material.taps.relative_width[c]);
     }
     const float radius = static_cast<float>(material.taps.radius_mm);
-    pixel.touched = std::fmax(pixel.footprint[0], pixel.footprint[1]) * pixel.spread * radius >= 0.5F;
+    pixel.wide = std::fmax(pixel.footprint[0], pixel.footprint[1]) * pixel.spread * radius >= 0.5F;
   }
 
   void measure_segments(std::size_t i) {

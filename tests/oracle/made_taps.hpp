@@ -10,33 +10,63 @@
 
 #include "dermis/oracle/reference.hpp"
 #include "dermis/taps.hpp"
-
-/// f(r) for all channels at the nodes from r^2 = 2^first to 2^last.
-inline dermis::RadialTable made_table(const std::function<double(double)>& f, int first_exponent, int last_exponent,
-                                      int log2_nodes_per_octave) {
-  dermis::RadialTable table{first_exponent, log2_nodes_per_octave, {}};
-  const int nodes = 1 << log2_nodes_per_octave;
-  for (int i = 0; i <= (last_exponent - first_exponent) * nodes; ++i) {
-    const double r2 = std::ldexp(1 + static_cast<double>(i % nodes) / nodes, first_exponent + i / nodes);
-    const auto value = static_cast<float>(f(std::sqrt(r2)));
-    table.values.push_back({value, value, value});
-  }
-  return table;
-}
+#include "made_table.hpp"
 
 /// Light of a Gaussian within |x| < r.
 inline double gaussian_strip(double r_mm, double sigma_mm) { return std::erf(r_mm / (sigma_mm * std::numbers::sqrt2)); }
 
-/// The same in all channels.
-inline std::array<float, 3> grey(double value) {
-  const auto v = static_cast<float>(value);
-  return {v, v, v};
+/// Light of a Gaussian per length of line.
+inline double gaussian_line(double r_mm, double sigma_mm) {
+  return std::exp(-r_mm * r_mm / (2 * sigma_mm * sigma_mm)) / (sigma_mm * std::sqrt(2 * std::numbers::pi));
 }
 
-/// One term, pairs of taps of the same length.
+/// One term, pairs of taps of the same length. Flat weights are still to be laid.
 inline dermis::Rung made_rung(double px_per_mm, const std::vector<int>& offsets_px, double length_mm) {
   const dermis::TapWeight weight{grey(length_mm), {}};
-  return {static_cast<float>(px_per_mm), 0.5F, {grey(1)}, offsets_px, {offsets_px.size(), weight}};
+  return {static_cast<float>(px_per_mm), 0.5F, {grey(1)}, offsets_px, {offsets_px.size(), weight}, {}};
+}
+
+inline double flat_quantum(double weight) { return std::round(weight * 0x1p24) * 0x1p-24; }
+
+/// Gives a rung flat weights: those of the pairs in a term and a channel; the centre's make up the sum of 1, or are
+/// nonsense where they count nothing.
+inline void lay_flat(dermis::Rung& rung, const std::vector<dermis::Term>& terms,
+                     const std::function<double(std::size_t pair, std::size_t term, std::size_t c)>& weight) {
+  std::vector<std::array<float, 3>> weights((1 + rung.offsets_px.size()) * terms.size());
+  for (std::size_t t = 0; t < terms.size(); ++t) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      double rest = 1;
+      for (std::size_t pair = 0; pair < rung.offsets_px.size(); ++pair) {
+        const double own = flat_quantum(weight(pair, t, c));
+        weights[(1 + pair) * terms.size() + t][c] = static_cast<float>(own);
+        rest -= 2 * own;
+      }
+      weights[t][c] = terms[t].normalised ? static_cast<float>(rest) : 7;
+    }
+  }
+  rung.flat_weights.fill(weights);  // of every part
+}
+
+/// Gives all rungs the flat weights that the others are on a plane parallel to the screen whose pixels have the rung's
+/// footprint.
+inline void lay_flat(dermis::Taps& taps) {
+  for (dermis::Rung& rung : taps.rungs) {
+    const double pixel_mm = 1 / static_cast<double>(rung.footprint);
+    const std::function<double(std::size_t, std::size_t, std::size_t)> tap = [&](std::size_t pair, std::size_t t,
+                                                                                 std::size_t c) {
+      const dermis::TapWeight& weight = rung.weights[pair * taps.terms.size() + t];
+      const double r_mm = rung.offsets_px[pair] * pixel_mm;
+      const double own = static_cast<double>(weight.length_mm[c]) * value_of(taps.terms[t].falloff, c, r_mm * r_mm);
+      return t == 0 ? own : own + static_cast<double>(weight.share[c]) * tap(pair, 0, c);
+    };
+    lay_flat(rung, taps.terms, [&](std::size_t pair, std::size_t t, std::size_t c) {
+      if (!taps.terms[t].normalised) return tap(pair, t, c);
+      const double r_mm = static_cast<double>(rung.core_half_width_px) * pixel_mm;
+      double sum = static_cast<double>(rung.core_gain[t][c]) * value_of(taps.terms[t].core, c, r_mm);
+      for (std::size_t i = 0; i < rung.offsets_px.size(); ++i) sum += 2 * tap(i, t, c);
+      return tap(pair, t, c) / sum;
+    });
+  }
 }
 
 /// Adds a term whose pairs of taps all have that weight.
@@ -50,6 +80,7 @@ inline void add_term(dermis::Taps& taps, const dermis::Term& term, const dermis:
       rung.weights.insert(rung.weights.begin() + static_cast<std::ptrdiff_t>((pair + 1) * terms - 1), weight);
     }
   }
+  lay_flat(taps);
 }
 
 /// Gives two terms the scales 1 - s and s.
@@ -61,12 +92,10 @@ inline void share_out(dermis::Taps& taps, double s) {
 /// The falloff and the core of a Gaussian, scale 1, normalised.
 inline dermis::Term gaussian_term(double sigma_mm) {
   const int last = 2 * static_cast<int>(std::ceil(std::log2(8 * sigma_mm)));
-  const double peak = 1 / (sigma_mm * std::sqrt(2 * std::numbers::pi));
+  const double end_mm = std::ldexp(1.0, last / 2);
   dermis::Term term;
-  term.falloff =
-      made_table([&](double r) { return peak * std::exp(-r * r / (2 * sigma_mm * sigma_mm)); }, last - 30, last, 7);
-  term.falloff.values.back() = {0, 0, 0};
-  term.core = made_table([&](double r) { return gaussian_strip(r, sigma_mm); }, last - 30, last, 7);
+  term.falloff = made_table([&](double r) { return r < end_mm ? gaussian_line(r, sigma_mm) : 0; }, 2 * last);
+  term.core = made_table([&](double root) { return gaussian_strip(root * root, sigma_mm); }, last);
   return term;
 }
 
@@ -79,14 +108,15 @@ inline dermis::Taps gaussian_taps(double sigma_mm, double px_per_mm) {
   std::vector<int> offsets_px;
   for (int i = 1; i <= 6 * sigma_mm * px_per_mm; ++i) offsets_px.push_back(i);
   taps.rungs.push_back(made_rung(px_per_mm, offsets_px, 1 / px_per_mm));
+  lay_flat(taps);
   return taps;
 }
 
 /// A falloff that is one value up to r = 1 mm and nothing from r^2 = 4 on, a core that is one value.
 inline dermis::Term tiny_term(double falloff, double core) {
   dermis::Term term;
-  term.falloff = {0, 0, {grey(falloff), grey(falloff / 2), {0, 0, 0}}};
-  term.core = {-20, 0, {grey(core)}};
+  term.falloff = linear_table(0, {falloff, falloff / 2, 0});
+  term.core = linear_table(0, {core});
   return term;
 }
 
@@ -106,6 +136,7 @@ inline dermis::Taps tiny_taps() {
   taps.relative_width = {1, 1, 1};
   taps.terms.push_back(tiny_term(0.25, 0.5));
   taps.rungs.push_back(made_rung(1, {1}, 1));
+  lay_flat(taps);
   return taps;
 }
 

@@ -6,13 +6,22 @@
 
 #include "dermis/oracle/reference.hpp"
 #include "made_frame.hpp"
+#include "made_taps.hpp"
 
 namespace dermis::oracle {
 
 inline const Camera one_px_per_mm = Camera::orthographic(1, 1);
 
-inline Reference run(const MadeFrame& made, const Material& material, const Options& options = {}) {
+/// With flat weights that equal the others on a plane parallel to the screen of the rung's footprint.
+inline Reference run(const MadeFrame& made, Material material, const Options& options = {}) {
+  lay_flat(material.taps);
   return separable(made.frame(), std::span(&material, 1), options);
+}
+
+/// The same frame with a mask that changes no width, but keeps cells from being flat.
+inline MadeFrame never_flat(MadeFrame made) {
+  made.mask.assign(made.pixels(), 1);
+  return made;
 }
 
 /// Three pixels in a row or a column with the light 1, 10, 100 in red.

@@ -131,7 +131,7 @@ TEST_CASE("materials of one and of several terms side by side", "[terms]") {
   Random random(14);
   MadeFrame made = rough_frame(random, 40, 12);
   for (std::size_t i = 0; i < made.pixels(); ++i) made.material.push_back(static_cast<float>(random.integer(0, 3)));
-  // Either left alone or wide enough for taps by itself, whatever it shares its span with; and one rung for all.
+  // Either left alone or wide enough for taps by itself, whatever it shares its cell with; and one rung for all.
   for (float& mask : made.mask) mask = mask < 0.2F ? 0.01F : mask;
   std::vector materials{gaussian_material(0.5, 4, 1), gaussian_material(0.3, 4, 2), gaussian_material(0.4, 4, 3)};
   add_term(materials[1].taps, gaussian_difference(0.5, 0, 0.5), {{0.25F, 0.25F, 0.25F}, {0.5F, 0.5F, 0.5F}});
@@ -158,7 +158,7 @@ TEST_CASE("all terms of a pixel are rotated by the same angle", "[terms]") {
   // One pair of taps at 8 px; only the middle scatters. Light x^2 in red, y^2 in green, and 0 in the middle.
   Material material = tiny_material();
   material.taps.radius_mm = 8;
-  material.taps.terms[0].falloff = {-4, 0, {grey(0.25)}};
+  material.taps.terms[0].falloff = linear_table(0, {0.25});
   material.taps.rungs = {made_rung(1, {8}, 1)};
   MadeFrame made(21, 21, one_px_per_mm, 0);
   for (int y = -10; y <= 10; ++y) {

@@ -32,8 +32,10 @@ struct Reference {
 
 /// The same taps, summed pixel by pixel; see Taps. Where a pass has no taps for a pixel (rung -1, or a pixel that gives
 /// light but takes none) each term is its sum at one point: 1 times what it reads if normalised, else Term::sum times
-/// it; but the second pass returns pixels that take none as they were. Reads the frame's host images. Output formats
-/// are float32 for the bounds: a caller that stores half adds half an ulp of that.
+/// it; but the second pass returns pixels that take none as they were. Pixels whose light or albedo is not finite
+/// belong to the surface (depths, slopes, rungs and what is flat) but neither give nor take light. Reads the frame's
+/// host images. The bounds hold for outputs of float32: a caller that stores half adds half an ulp of that. Where
+/// float32 cannot tell which rung a cell has or whether it is flat, they admit every outcome.
 Reference separable(const Frame& frame, std::span<const Material> materials, const Options& options);
 
 /// The surface integral over all visible pixels of the material,

@@ -1,4 +1,5 @@
-// Functions of the squared distance, tabulated where the exponent and the top mantissa bits of a float change.
+// Functions of the squared distance, tabulated where the exponent and the top mantissa bits of a float change:
+// LinearTable of linear_table.hpp.
 #include "params.h"
 #include "vector.h"
 
@@ -7,7 +8,7 @@
 #endif
 
 // All channels at one squared distance per lane. The tables end with one node more than TableParams says.
-inline vrgb look_up(global const float4* tables, struct TableParams table, vfloat r_squared) {
+static inline vrgb look_up_linear(global const float4* tables, struct TableParams table, vfloat r_squared) {
   const vint bits = clamp(as_vint(r_squared) - table.first_bits, (vint)(0), (vint)(table.last_bits));
   const vint index = (bits >> TABLE_SHIFT) + table.first;
   const vint below_node = bits & ((1 << TABLE_SHIFT) - 1);
@@ -27,27 +28,16 @@ inline vrgb look_up(global const float4* tables, struct TableParams table, vfloa
   return result;
 }
 
-// The width factor of the profile of each lane and channel, as its reciprocal. One everywhere unless an albedo or a
-// mask scales the profile.
-inline vrgb width_reciprocal(global const float* width, size_t plane_size, size_t at) {
-#if PIXEL_WIDTH
-  const vrgb k = load_rgb(width, plane_size, at);
-  const vrgb reciprocal = {1.0f / k.r, 1.0f / k.g, 1.0f / k.b};
-#else
-  const vrgb reciprocal = {(vfloat)(1.0f), (vfloat)(1.0f), (vfloat)(1.0f)};
-#endif
-  return reciprocal;
-}
-
 // The table at r / k.
-inline vrgb look_up_scaled(global const float4* tables, struct TableParams table, vfloat r_squared, vrgb reciprocal) {
+static inline vrgb look_up_linear_scaled(global const float4* tables, struct TableParams table, vfloat r_squared,
+                                         vrgb reciprocal) {
 #if PIXEL_WIDTH
-  const vrgb r = look_up(tables, table, r_squared * reciprocal.r * reciprocal.r);
-  const vrgb g = look_up(tables, table, r_squared * reciprocal.g * reciprocal.g);
-  const vrgb b = look_up(tables, table, r_squared * reciprocal.b * reciprocal.b);
+  const vrgb r = look_up_linear(tables, table, r_squared * reciprocal.r * reciprocal.r);
+  const vrgb g = look_up_linear(tables, table, r_squared * reciprocal.g * reciprocal.g);
+  const vrgb b = look_up_linear(tables, table, r_squared * reciprocal.b * reciprocal.b);
   const vrgb result = {r.r, g.g, b.b};
   return result;
 #else
-  return look_up(tables, table, r_squared);
+  return look_up_linear(tables, table, r_squared);
 #endif
 }

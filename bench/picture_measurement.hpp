@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "case.hpp"
 #include "dermis/device.hpp"
 #include "dermis/exr.hpp"
+#include "picture_cases.hpp"
 
 namespace dermis::bench {
 
@@ -25,24 +25,22 @@ struct Subject {
 
   /// Views of the images and of a place for the output.
   Frame frame(std::vector<float>& scattered) const;
-  /// Bytes that a filter has to read and write.
-  std::size_t bytes() const;
 };
 
 /// Reads a Cycles picture with position and depth. `names` are the presets of the ids in `ids`.
 Subject load_subject(const std::filesystem::path& path, double mm_per_unit, const std::vector<int>& ids,
                      const std::vector<std::string>& names);
 
-struct Measurement {
-  Row exact;
-  std::vector<Row> rows;
+struct PictureMeasurement {
+  PictureRow exact;
+  std::vector<PictureRow> rows;
   double copy_ms = 0;
   std::vector<long> pixels;  ///< per material
 };
 
 /// Runs the exact method once, then every case in turn, `rounds` times after two that do not count.
 /// `report` is told what is going on.
-Measurement measure(const Device& device, const Subject& subject, const std::vector<Case>& cases, int rounds,
-                    const std::function<void(const std::string&)>& report);
+PictureMeasurement measure_picture(const Device& device, const Subject& subject, const std::vector<PictureCase>& cases,
+                                   int rounds, const std::function<void(const std::string&)>& report);
 
 }  // namespace dermis::bench

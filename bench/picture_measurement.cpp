@@ -1,26 +1,15 @@
-#include "measure.hpp"
+#include "picture_measurement.hpp"
 
 #include <algorithm>
-#include <chrono>
-#include <cmath>
 
-#include "copy_time.hpp"
+#include "copy.hpp"
 #include "dermis/oracle/compare.hpp"
+#include "percentile.hpp"
+#include "stopwatch.hpp"
 
 namespace dermis::bench {
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double since_ms(Clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
-
-double percentile(std::vector<double> values, double share) {
-  std::sort(values.begin(), values.end());
-  return values[static_cast<std::size_t>(std::lround(share * static_cast<double>(values.size() - 1)))];
-}
 
 oracle::Picture picture_of(const Subject& subject, const std::vector<float>& values) {
   oracle::Picture picture(subject.width, subject.height, 3);
@@ -39,12 +28,12 @@ oracle::Picture mask_of(const Subject& subject, std::size_t index) {
 
 /// A plan and what its runs took.
 struct Running {
-  Row row;
+  PictureRow row;
   Plan plan;
   std::vector<float> scattered;
   std::vector<double> total_ms, scatter_ms;
 
-  Running(const Device& device, const Subject& subject, const Case& what)
+  Running(const Device& device, const Subject& subject, const PictureCase& what)
       : plan(timed_plan(device, subject, what.options, row.plan_ms)), scattered(subject.light.size()) {
     row.what = what;
   }
@@ -57,14 +46,13 @@ struct Running {
 
   static Plan timed_plan(const Device& device, const Subject& subject, const Options& options, double& ms) {
     std::vector<float> none(subject.light.size());
-    const auto start = Clock::now();
-    Plan plan(device, subject.materials, FrameDescription::of(subject.frame(none)), options);
-    ms = since_ms(start);
-    return plan;
+    std::optional<Plan> plan;
+    ms = time_ms([&] { plan.emplace(device, subject.materials, FrameDescription::of(subject.frame(none)), options); });
+    return std::move(*plan);
   }
 };
 
-void add_times(Row& row, const Running& running, double copy_ms) {
+void add_times(PictureRow& row, const Running& running, double copy_ms) {
   row.ms = percentile(running.total_ms, 0.5);
   row.ms_p10 = percentile(running.total_ms, 0.1);
   row.ms_p90 = percentile(running.total_ms, 0.9);
@@ -82,8 +70,6 @@ Frame Subject::frame(std::vector<float>& scattered) const {
   frame.scattered.host = scattered.data();
   return frame;
 }
-
-std::size_t Subject::bytes() const { return (2 * light.size() + depth.size() + ids.size()) * sizeof(float); }
 
 Subject load_subject(const std::filesystem::path& path, double mm_per_unit, const std::vector<int>& ids,
                      const std::vector<std::string>& names) {
@@ -105,24 +91,24 @@ Subject load_subject(const std::filesystem::path& path, double mm_per_unit, cons
   return subject;
 }
 
-Measurement measure(const Device& device, const Subject& subject, const std::vector<Case>& cases, int rounds,
-                    const std::function<void(const std::string&)>& report) {
-  Measurement result;
+PictureMeasurement measure_picture(const Device& device, const Subject& subject, const std::vector<PictureCase>& cases,
+                                   int rounds, const std::function<void(const std::string&)>& report) {
+  PictureMeasurement result;
   report("exact (takes the longest)");
   Running exact(device, subject, {"exact", "", {.method = Method::exact}});
   exact.run(subject);
 
   std::vector<Running> running;
-  for (const Case& what : cases) {
+  for (const PictureCase& what : cases) {
     report("plan of " + what.name);
     running.emplace_back(device, subject, what);
   }
-  Copy copy(subject.bytes(), device.info().compute_units);
+  FrameCopy copy(subject.depth.size());
   std::vector<double> copy_ms;
   constexpr int rounds_to_drop = 2;
   for (int round = 0; round < rounds + rounds_to_drop; ++round) {
     report("round " + std::to_string(round + 1) + " of " + std::to_string(rounds + rounds_to_drop));
-    copy_ms.push_back(copy.run());
+    copy_ms.push_back(time_ms([&] { copy.run(); }));
     for (Running& one : running) one.run(subject);
     if (round + 1 == rounds_to_drop) {
       copy_ms.clear();

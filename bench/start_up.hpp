@@ -1,0 +1,24 @@
+// What the first frame of a process costs.
+#pragma once
+
+#include <string>
+
+namespace dermis::bench {
+
+/// Milliseconds, and the memory of the whole process.
+struct StartUp {
+  double plan_ms = 0;
+  double first_run_ms = 0;
+  double second_plan_ms = 0;
+  double peak_mb = 0;
+};
+
+/// Measures one frame of the default scene in a process of its own: this program once more, with --start-up-child. The
+/// caches of compiled kernels (of PoCL and of CUDA) are in a fresh folder; `cache_is_filled` lets a process before fill
+/// them. Throws Error(device) if the process fails.
+StartUp measure_start_up(bool cache_is_filled, const std::string& device_name);
+
+/// The process itself: prints a StartUp as JSON on stdout.
+void run_start_up_child(const std::string& device_name);
+
+}  // namespace dermis::bench

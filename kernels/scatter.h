@@ -1,0 +1,351 @@
+// One separable pass over V pixels of a row. See Taps in taps.hpp for what it computes.
+#include "load.h"
+#include "octaves.h"
+#include "rotation.h"
+#include "tangent.h"
+
+#ifndef TERMS
+#error "TERMS: of every material; those that it does not have weigh nothing"
+#endif
+
+// What the host prepared.
+typedef struct {
+  global const struct MaterialParams* materials;
+  global const struct TermParams* terms;
+  global const struct RungParams* rungs;
+  global const int* offsets;
+  global const struct WeightParams* weights;
+  global const struct FlatWeight* flat_weights;
+  global const struct RotationParams* rotations;
+  global const struct CellFootprint* footprints;
+  uint seed;
+} Tables;
+
+// One pass: the horizontal one reads one image of light for all terms, the vertical one an image for each.
+typedef struct {
+  const Window* from;
+  int axis;
+  int x_step, y_step;
+  int step;           // elements from a pixel to the next along the pass
+  size_t next_light;  // from the image of one term to that of the next
+} Pass;
+
+typedef struct {
+  vrgb light[TERMS];
+  vrgb weight[TERMS];
+} Sums;
+
+FORCED_INLINE Pass pass_from(const Window* w, int axis) {
+  const Pass pass = {w, axis, axis == 0, axis == 1, axis == 0 ? 1 : w->row_stride, axis == 0 ? 0 : 3 * w->plane};
+  return pass;
+}
+
+FORCED_INLINE vrgb load_term(const Pass* s, int t, size_t at) {
+  return load_rgb(s->from->light + t * s->next_light, s->from->plane, at);
+}
+
+// The result of a term from its sums.
+FORCED_INLINE vrgb finish_term(global const struct TermParams* term, vrgb light, vrgb weight, vrgb own) {
+  if (term->normalised) {
+    const vrgb mean = {light.r / weight.r, light.g / weight.g, light.b / weight.b};
+    return mean;
+  }
+  const vrgb missing = {term->sum[0] - weight.r, term->sum[1] - weight.g, term->sum[2] - weight.b};
+  return fused(missing, own, light);
+}
+
+// Whether the V pixels an offset away lie in the frame, some of them.
+FORCED_INLINE int in_frame(const struct FrameParams* f, const Pass* s, int x, int y, int offset) {
+  const int tap_x = x + s->x_step * offset;
+  const int tap_y = y + s->y_step * offset;
+  return tap_x > -V && tap_x < f->width && tap_y >= 0 && tap_y < f->height;
+}
+
+// A flat cell where every tap falls on the material.
+FORCED_INLINE void scatter_clean(vrgb* result, const Pass* s, const Tables* tables,
+                                 global const struct RungParams* rung, global const struct FlatWeight* weights, int x,
+                                 int y) {
+  const size_t at = pixel_at(s->from, x, y);
+  global const int* offsets = tables->offsets + rung->first_offset;
+#pragma unroll
+  for (int t = 0; t < TERMS; ++t) {
+    result[t] = scaled(weights[t].rgb, load_term(s, t, at));
+  }
+#pragma nounroll
+  for (int i = 0; i < rung->pairs; ++i) {
+    const long offset = offsets[i] * (long)s->step;
+    weights += TERMS;
+    vrgb pair;
+#pragma unroll
+    for (int t = 0; t < TERMS; ++t) {
+      if (t == 0 || s->axis == 1) {
+        pair = sum_rgb(load_term(s, t, at + offset), load_term(s, t, at - offset));
+      }
+      result[t].r = fma(weights[t].rgb[0], pair.r, result[t].r);
+      result[t].g = fma(weights[t].rgb[1], pair.g, result[t].g);
+      result[t].b = fma(weights[t].rgb[2], pair.b, result[t].b);
+    }
+  }
+}
+
+// A flat cell where some taps fall on something else. With none it gives the same bits as scatter_clean.
+FORCED_INLINE void scatter_flat(vrgb* result, const struct FrameParams* f, const Pass* s, const Tables* tables,
+                                global const struct RungParams* rung, global const struct FlatWeight* weights,
+                                global const struct TermParams* terms, vint material, int x, int y) {
+  const size_t at = pixel_at(s->from, x, y);
+  global const int* offsets = tables->offsets + rung->first_offset;
+  vrgb own[TERMS];
+  Sums sums;
+#pragma unroll
+  for (int t = 0; t < TERMS; ++t) {
+    const vrgb centre = {(vfloat)(weights[t].rgb[0]), (vfloat)(weights[t].rgb[1]), (vfloat)(weights[t].rgb[2])};
+    own[t] = load_term(s, t, at);
+    sums.light[t] = product(centre, own[t]);
+    sums.weight[t] = centre;
+  }
+#pragma nounroll
+  for (int i = 0; i < rung->pairs; ++i) {
+    weights += TERMS;
+    vrgb pair[TERMS];
+    vfloat there = (vfloat)(0.0f);
+    for (int t = 0; t < TERMS; ++t) pair[t] = same_rgb((vfloat)(0.0f));
+#pragma nounroll
+    for (int side = -1; side <= 1; side += 2) {
+      const int offset = side * offsets[i];
+      if (!in_frame(f, s, x, y, offset)) continue;
+      const size_t tap = at + offset * (long)s->step;
+      const vint same = AS_MASK((load_bytes(s->from->material + tap) & MATERIAL_MASK) == material);
+      there += keep(same, (vfloat)(1.0f));
+#pragma unroll
+      for (int t = 0; t < TERMS; ++t) {
+        const vrgb light = load_term(s, t, tap);
+        pair[t] = sum_rgb(pair[t], keep_rgb(same, light));
+      }
+    }
+#pragma unroll
+    for (int t = 0; t < TERMS; ++t) {
+      sums.light[t].r = fma(weights[t].rgb[0], pair[t].r, sums.light[t].r);
+      sums.light[t].g = fma(weights[t].rgb[1], pair[t].g, sums.light[t].g);
+      sums.light[t].b = fma(weights[t].rgb[2], pair[t].b, sums.light[t].b);
+      sums.weight[t].r = fma(weights[t].rgb[0], there, sums.weight[t].r);
+      sums.weight[t].g = fma(weights[t].rgb[1], there, sums.weight[t].g);
+      sums.weight[t].b = fma(weights[t].rgb[2], there, sums.weight[t].b);
+    }
+  }
+#pragma unroll
+  for (int t = 0; t < TERMS; ++t) {
+    if (terms[t].normalised) {
+      result[t] = finish_term(terms + t, sums.light[t], sums.weight[t], own[t]);
+    } else {
+      // The weight of the centre makes the sum of all that of the term; what is missing counts as the centre.
+      const vrgb missing = {terms[t].sum[0] - sums.weight[t].r, terms[t].sum[1] - sums.weight[t].g,
+                            terms[t].sum[2] - sums.weight[t].b};
+      result[t] = fused(missing, own[t], sums.light[t]);
+    }
+  }
+}
+
+// What every tap of the lanes of one material needs on a curved surface.
+typedef struct {
+  Points points;
+  vint material;    // 1 + its index, the same in all lanes
+  vrgb reciprocal;  // of the width factor
+  float footprint;  // of the rung
+  global const struct TermParams* terms;
+} Target;
+
+// Adds taps to the sums: squared distance, length of surface and light are theirs.
+FORCED_INLINE void add_taps(Sums* sums, const Target* target, global const struct WeightParams* its, vfloat r_squared,
+                            vfloat segment, const vrgb* light) {
+  const vfloat stretch = target->footprint * segment;
+  const vrgb length = times(target->reciprocal, stretch);
+  const vrgb distance = times(product(target->reciprocal, target->reciprocal), r_squared);  // squared, over k^2
+  vrgb first;
+#pragma unroll
+  for (int t = 0; t < TERMS; ++t) {
+    const vrgb falloff = look_up(&target->terms[t].falloff, distance);
+    vrgb weight = product(scaled(its[t].length_mm, falloff), length);
+    if (t == 0) {
+      first = weight;
+    } else {
+      weight.r = fma(its[t].share[0], first.r, weight.r);
+      weight.g = fma(its[t].share[1], first.g, weight.g);
+      weight.b = fma(its[t].share[2], first.b, weight.b);
+    }
+    sums->light[t] = fused(weight, light[t], sums->light[t]);
+    sums->weight[t] = sum_rgb(sums->weight[t], weight);
+  }
+}
+
+// Adds the pixels an offset away along the pass.
+FORCED_INLINE void add_straight(Sums* sums, const struct FrameParams* f, const Pass* s, const Target* target,
+                                global const struct WeightParams* its, size_t at, int x, int y, int offset) {
+  if (!in_frame(f, s, x, y, offset)) return;
+  const size_t tap = at + offset * (long)s->step;
+  const vint same = AS_MASK((load_bytes(s->from->material + tap) & MATERIAL_MASK) == target->material);
+  const vfloat r_squared =
+      squared_distance_along(f, &target->points, load_floats(s->from->depth + tap), (float)offset, s->axis);
+  vrgb light[TERMS];
+#pragma unroll
+  for (int t = 0; t < TERMS; ++t) light[t] = load_term(s, t, tap);
+  // Elsewhere there is no surface to weigh, and the light is finite.
+  add_taps(sums, target, its, r_squared, keep(same, load_floats(s->from->segment + tap)), light);
+}
+
+#if JITTER
+// Adds the pixels (dx, dy) away, different for each lane.
+FORCED_INLINE void add_rotated(Sums* sums, const struct FrameParams* f, const Pass* s, const Target* target,
+                               global const struct WeightParams* its, int x, int y, vint dx, vint dy) {
+  const vint qx = x + int_lane_numbers() + dx;
+  const vint qy = y + dy;
+  vfloat z, segment, fx, fy;
+  vint m;
+  vrgb light[TERMS];
+#define READ_LANE(lane)                                                                                                \
+  {                                                                                                                    \
+    const int inside = LANE(qx, lane) >= max(s->from->x_begin, 0) && LANE(qx, lane) < min(s->from->x_end, f->width) && \
+                       LANE(qy, lane) >= s->from->y_begin && LANE(qy, lane) < s->from->y_end;                          \
+    const size_t at = pixel_at(s->from, inside ? LANE(qx, lane) : x, inside ? LANE(qy, lane) : y);                     \
+    LANE(z, lane) = s->from->depth[at];                                                                                \
+    LANE(segment, lane) = s->from->segment[at];                                                                        \
+    LANE(m, lane) = inside ? s->from->material[at] : 0;                                                                \
+    LANE(fx, lane) = (float)LANE(dx, lane);                                                                            \
+    LANE(fy, lane) = (float)LANE(dy, lane);                                                                            \
+    for (int t = 0; t < TERMS; ++t) {                                                                                  \
+      global const float* its_light = s->from->light + t * s->next_light + at;                                         \
+      LANE(light[t].r, lane) = its_light[0];                                                                           \
+      LANE(light[t].g, lane) = its_light[s->from->plane];                                                              \
+      LANE(light[t].b, lane) = its_light[2 * s->from->plane];                                                          \
+    }                                                                                                                  \
+  }
+  EACH_LANE(READ_LANE)
+#undef READ_LANE
+  const vint same = AS_MASK((m & MATERIAL_MASK) == target->material);
+  for (int t = 0; t < TERMS; ++t) light[t] = keep_rgb(same, light[t]);
+  add_taps(sums, target, its, squared_distance(f, &target->points, z, fx, fy), keep(same, segment), light);
+}
+
+// The axis of the pass, turned by each lane's angle, in 1/4096 px per px.
+FORCED_INLINE void rotated_axis(global const struct RotationParams* rotations, vint index, int axis, vint* dx,
+                                vint* dy) {
+#define READ_LANE(lane)                                           \
+  {                                                               \
+    const struct RotationParams r = rotations[LANE(index, lane)]; \
+    LANE(*dx, lane) = axis == 0 ? r.cosine : r.sine_y;            \
+    LANE(*dy, lane) = axis == 0 ? r.sine_x : r.cosine;            \
+  }
+  EACH_LANE(READ_LANE)
+#undef READ_LANE
+}
+#endif
+
+// The lanes of one material on a curved surface.
+FORCED_INLINE void scatter_curved(vrgb* result, const struct FrameParams* f, const Pass* s, const Tables* tables,
+                                  global const struct RungParams* rung, global const struct TermParams* terms,
+                                  vint material, int x, int y) {
+  const size_t at = pixel_at(s->from, x, y);
+  global const struct WeightParams* weights = tables->weights + rung->first_weight;
+  global const int* offsets = tables->offsets + rung->first_offset;
+  Target target;
+  target.points = points_at(f, load_floats(s->from->depth + at), x, y);
+  target.material = material;
+  target.reciprocal = width_reciprocal(s->from, at);
+  target.footprint = rung->footprint;
+  target.terms = terms;
+  const vfloat core_mm = rung->core_half_width_px * load_floats(s->from->segment + at);
+  Sums sums;
+  vrgb own[TERMS];
+#pragma unroll
+  for (int t = 0; t < TERMS; ++t) {
+    own[t] = load_term(s, t, at);
+    const vrgb core = terms[t].normalised
+                          ? scaled(weights[t].length_mm, look_up(&terms[t].core, times(target.reciprocal, core_mm)))
+                          : same_rgb((vfloat)(0.0f));
+    sums.light[t] = product(core, own[t]);
+    sums.weight[t] = core;
+  }
+  int i = 0;
+#if JITTER
+  vint axis_x, axis_y;
+  rotated_axis(tables->rotations, rotation_index(x + int_lane_numbers(), (vint)(y), tables->seed), s->axis, &axis_x,
+               &axis_y);
+  for (; i < rung->rotated_pairs; ++i) {
+    const vint dx = (offsets[i] * axis_x + 2048) >> 12;
+    const vint dy = (offsets[i] * axis_y + 2048) >> 12;
+    weights += TERMS;
+    add_rotated(&sums, f, s, &target, weights, x, y, dx, dy);
+    add_rotated(&sums, f, s, &target, weights, x, y, -dx, -dy);
+  }
+#endif
+#pragma nounroll
+  for (; i < rung->pairs; ++i) {
+    weights += TERMS;
+#pragma nounroll
+    for (int side = -1; side <= 1; side += 2) {
+      add_straight(&sums, f, s, &target, weights, at, x, y, side * offsets[i]);
+    }
+  }
+#pragma unroll
+  for (int t = 0; t < TERMS; ++t) result[t] = finish_term(terms + t, sums.light[t], sums.weight[t], own[t]);
+}
+
+// Which rung, and which part of it.
+typedef struct {
+  int rung;  // -1 if the kernel radius is below half a pixel
+  int part;
+} Step;
+
+// Steps of 1/16 octave in the bits of a float; on a flat cell the nearest of the parts of those.
+static inline Step step_of(float radius_px, int is_flat, int rungs) {
+  const int bits = as_int(radius_px) - as_int(0.5f) + (is_flat ? 1 << 15 : 0);
+  const int rung = min(bits >> 19, rungs - 1);
+  const Step step = {radius_px >= 0.5f ? rung : -1, min((bits - (rung << 19)) >> 16, RUNG_PARTS - 1)};
+  return step;
+}
+
+// The lanes of all materials: of each term in the horizontal pass, their sum as the first one in the vertical pass.
+// `clean`: the pass reads one material without gaps as far as taps reach.
+FORCED_INLINE void scatter_pixels(vrgb* result, const struct FrameParams* f, const Pass* s, const Tables* tables,
+                                  int clean, int x, int y) {
+  const size_t at = pixel_at(s->from, x, y);
+  const vint m = load_bytes(s->from->material + at);
+  global const struct CellFootprint* cell = tables->footprints + (size_t)(y / CELL) * f->cells_x + x / CELL;
+  const float footprint = s->axis == 0 ? cell->x : cell->y;
+  for (int t = 0; t < TERMS; ++t) result[t] = same_rgb((vfloat)(0.0f));
+  for (int i = 0; i < MATERIALS; ++i) {
+    const vint material = (vint)(i + 1);
+    const vint lanes = AS_MASK((m & MATERIAL_MASK) == material);
+    if (!any_bit(lanes)) continue;
+    global const struct MaterialParams* its = tables->materials + i;
+    global const struct TermParams* terms = tables->terms + its->first_term;
+    const vint mine = AS_MASK(m == material);
+    const Step step = step_of(fabs(footprint) * its->radius_mm, footprint < 0.0f, its->rungs);
+    vrgb scattered[TERMS];
+    const int has_taps = step.rung >= 0 && any_bit(mine);
+    if (has_taps) {
+      global const struct RungParams* rung = tables->rungs + its->first_rung + step.rung;
+      global const struct FlatWeight* flat_weights =
+          tables->flat_weights + rung->first_flat_weight + step.part * (rung->pairs + 1) * TERMS;
+      if (footprint > 0.0f) {
+        scatter_curved(scattered, f, s, tables, rung, terms, material, x, y);
+      } else if (clean) {
+        scatter_clean(scattered, s, tables, rung, flat_weights, x, y);
+      } else {
+        scatter_flat(scattered, f, s, tables, rung, flat_weights, terms, material, x, y);
+      }
+    }
+    vrgb total = same_rgb((vfloat)(0.0f));
+#pragma unroll
+    for (int t = 0; t < TERMS; ++t) {
+      // Without taps a term is its sum at one point.
+      vrgb value = scaled(terms[t].sum, load_term(s, t, at));
+      if (has_taps) value = select_rgb(value, scattered[t], mine);
+      if (s->axis == 0) {
+        result[t] = select_rgb(result[t], value, lanes);
+      } else {
+        total = t == 0 ? scaled(terms[0].scale, value) : sum_rgb(total, scaled(terms[t].scale, value));
+      }
+    }
+    if (s->axis == 1) result[0] = select_rgb(result[0], total, lanes);
+  }
+}

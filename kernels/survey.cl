@@ -1,0 +1,263 @@
+// survey: which material each pixel has, and what the surface of each cell is like. One work-item has a run of cells.
+#include "image.h"
+#include "shape.h"
+#include "vector.h"
+
+// One row of a cell.
+typedef struct {
+  vint material;  // as a byte of the plane
+  vfloat depth;   // mm; 0 where there is no material
+  vrgb k;
+} PixelRow;
+
+// 1 + the index of the material with that id, or 0.
+static inline vint find_material(vfloat id, global const struct MaterialParams* materials) {
+  const vfloat whole = rint(id);
+  const vint is_whole = AS_MASK(fabs(id - whole) <= 1e-3f);
+  vint found = (vint)(0);
+  for (int m = MATERIALS - 1; m >= 0; --m) {
+    found = select(found, (vint)(m + 1), is_whole & AS_MASK(whole == (float)materials[m].id));
+  }
+  return found;
+}
+
+// Only the images that have a role here; light and the outputs have none.
+typedef struct {
+  global const uchar *albedo, *depth, *material, *mask;
+  struct ImageParams albedo_at, depth_at, material_at, mask_at;
+} SurveyInputs;
+
+static inline PixelRow read_row(const struct FrameParams* f, const SurveyInputs* in,
+                                global const struct MaterialParams* materials, int x, int y) {
+  PixelRow row;
+  row.material = (vint)(1);
+#if HAS_MATERIAL
+  row.material = find_material(read_values(row_of(in->material, &in->material_at, f->width, y, 0), x), materials);
+#endif
+  row.material &= AS_MASK(x + int_lane_numbers() < (vint)(f->width));
+  row.depth = (vfloat)(0.0f);
+#if HAS_DEPTH
+  const vfloat units = read_values(row_of(in->depth, &in->depth_at, f->width, y, 0), x);
+  row.material &= AS_MASK(units < 1e9f) & AS_MASK(units > (f->slope_x > 0.0f ? 0.0f : -INFINITY));
+  row.depth = units * f->mm_per_unit;
+#endif
+  row.k = same_rgb((vfloat)(1.0f));
+#if PIXEL_WIDTH
+  vfloat mask = (vfloat)(1.0f);
+#if HAS_MASK
+  mask = read_values(row_of(in->mask, &in->mask_at, f->width, y, 0), x);
+  row.material &= AS_MASK(mask > 0.0f) & AS_MASK(isfinite(mask));
+#endif
+  vrgb albedo = same_rgb((vfloat)(1.0f));
+#if HAS_ALBEDO
+  const RgbRow albedo_row = rgb_row_of(in->albedo, &in->albedo_at, f->width, y);
+  albedo = read_rgb(&albedo_row, x);
+#endif
+  for (int i = 0; i < MATERIALS; ++i) {
+    const vint mine = AS_MASK(row.material == i + 1);
+    if (!any_bit(mine)) continue;
+    const vrgb k = width_factor(materials + i, albedo, mask);
+    row.k = select_rgb(row.k, k, mine);
+#if HAS_ALBEDO
+    if (materials[i].width_follows_albedo) {
+      row.material &= ~mine | (AS_MASK(isfinite(albedo.r)) & AS_MASK(isfinite(albedo.g)) & AS_MASK(isfinite(albedo.b)));
+    }
+#endif
+  }
+#endif
+  row.depth = keep(AS_MASK(row.material != 0), row.depth);
+  return row;
+}
+
+// fmin and fmax of numbers, without their care for NaN.
+FORCED_INLINE vfloat lower(vfloat a, vfloat b) { return select(b, a, AS_MASK(a < b)); }
+FORCED_INLINE vfloat higher(vfloat a, vfloat b) { return select(b, a, AS_MASK(a > b)); }
+
+typedef struct {
+  vfloat low, high;
+} Range;
+
+FORCED_INLINE void widen(Range* range, vfloat value, vint mask) {
+  range->low = lower(range->low, select((vfloat)(INFINITY), value, mask));
+  range->high = higher(range->high, select((vfloat)(-INFINITY), value, mask));
+}
+
+static inline float lowest(vfloat v) {
+  const float8 a = fmin(v.lo, v.hi);
+  const float4 b = fmin(a.lo, a.hi);
+  const float2 c = fmin(b.lo, b.hi);
+  return fmin(c.x, c.y);
+}
+
+static inline float highest(vfloat v) { return -lowest(-v); }
+
+static inline int count_lanes(vint mask) {
+  const int8 a = mask.lo + mask.hi;
+  const int4 b = a.lo + a.hi;
+  const int2 c = b.lo + b.hi;
+  return -(c.x + c.y);
+}
+
+static inline void survey_cell(const struct FrameParams* f, const SurveyInputs* in,
+                               global const struct MaterialParams* materials, int cell_x, int cell_y,
+                               global uchar* surface, global struct CellParams* cell) {
+  const Range nothing = {(vfloat)(INFINITY), (vfloat)(-INFINITY)};
+  Range depth = nothing;
+  Range along_x = nothing;
+  Range along_y = nothing;
+  vfloat size_x = nothing.low;  // smallest ones of pixels that scatter, mm
+  vfloat size_y = nothing.low;
+  vint scattered = (vint)(0);
+  vint narrow = (vint)(0);
+  float radius_mm = 0.0f;
+  const int x = cell_x * CELL;
+  const int y_begin = cell_y * CELL;
+  const int y_end = min(y_begin + CELL, f->height);
+  const vint has_next = (vint)(-1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, 0);
+  vint above_material = (vint)(0);
+  vfloat above_depth = (vfloat)(0.0f);
+  for (int y = y_begin; y < y_end; ++y) {
+    PixelRow row = read_row(f, in, materials, x, y);
+    const vint m = row.material;
+    const vint has_material = AS_MASK(m != 0);
+    if (any_bit(has_material)) {
+      const vfloat size_x_mm = fma(row.depth, (vfloat)(f->slope_x), (vfloat)(f->mm_per_px_x));
+      const vfloat size_y_mm = fma(row.depth, (vfloat)(f->slope_y), (vfloat)(f->mm_per_px_y));
+      const vfloat finest_mm = lower(size_x_mm, size_y_mm);
+      for (int i = 0; i < MATERIALS; ++i) {
+        const vint mine = AS_MASK(m == i + 1);
+        if (!any_bit(mine)) continue;
+        global const struct MaterialParams* its = materials + i;
+        const vfloat widest = widest_factor(its, row.k);
+        const vint is_narrow = mine & AS_MASK(widest * its->radius_mm < 0.5f * finest_mm);
+        const vint scatters = mine & ~is_narrow;
+        row.material |= is_narrow & NARROW_BIT;
+        narrow += is_narrow;
+        scattered += scatters;
+        if (any_bit(scatters)) radius_mm = fmax(radius_mm, its->radius_mm);
+        size_x = lower(size_x, select(nothing.low, PIXEL_WIDTH ? size_x_mm / widest : size_x_mm, scatters));
+        size_y = lower(size_y, select(nothing.low, PIXEL_WIDTH ? size_y_mm / widest : size_y_mm, scatters));
+      }
+#if HAS_DEPTH && !PIXEL_WIDTH && !JITTER
+      widen(&depth, row.depth, has_material);
+      const vint next_material = m.s123456789abcdeff;
+      const vfloat next_depth = row.depth.s123456789abcdeff;
+      widen(&along_x, next_depth - row.depth, has_material & has_next & AS_MASK(next_material == m));
+      widen(&along_y, row.depth - above_depth, has_material & AS_MASK(above_material == m));
+#endif
+    }
+    above_material = m;
+    above_depth = row.depth;
+    store_bytes(surface + (size_t)y * f->stride + PADDING + x, row.material);
+  }
+  cell->depth_low = lowest(depth.low);
+  cell->depth_high = highest(depth.high);
+  cell->along_x_low = lowest(along_x.low);
+  cell->along_x_high = highest(along_x.high);
+  cell->along_y_low = lowest(along_y.low);
+  cell->along_y_high = highest(along_y.high);
+  // The largest footprint is that of the smallest pixel.
+  const int any_scattered = count_lanes(scattered);
+  cell->finest_x = any_scattered > 0 ? 1.0f / lowest(size_x) : 0.0f;
+  cell->finest_y = any_scattered > 0 ? 1.0f / lowest(size_y) : 0.0f;
+  cell->radius_mm = radius_mm;
+  const int pixels = min(CELL, f->width - x) * (y_end - y_begin);
+  cell->counters[COUNT_SCATTERED] = any_scattered;
+  cell->counters[COUNT_NARROW] = count_lanes(narrow);
+  cell->counters[COUNT_WITHOUT_MATERIAL] = pixels - any_scattered - cell->counters[COUNT_NARROW];
+}
+
+kernel void survey(struct FrameParams f, int cells_per_item, global const struct MaterialParams* materials,
+                   global const uchar* albedo, struct ImageParams albedo_at, global const uchar* depth,
+                   struct ImageParams depth_at, global const uchar* material, struct ImageParams material_at,
+                   global const uchar* mask, struct ImageParams mask_at, global uchar* surface,
+                   global struct CellParams* cells) {
+  const SurveyInputs in = {albedo, depth, material, mask, albedo_at, depth_at, material_at, mask_at};
+  const int cell_y = get_global_id(1);
+  const int first = get_global_id(0) * cells_per_item;
+  const int last = min(first + cells_per_item, f.cells_x);
+  for (int cell_x = first; cell_x < last; ++cell_x) {
+    survey_cell(&f, &in, materials, cell_x, cell_y, surface, cells + cell_y * f.cells_x + cell_x);
+  }
+  // Beyond the frame there is no material.
+  for (int y = cell_y * CELL; y < min(cell_y * CELL + CELL, f.height); ++y) {
+    global uchar* row = surface + (size_t)y * f.stride;
+    if (first == 0) store_bytes(row, (vint)(0));
+    if (last == f.cells_x) store_bytes(row + f.stride - PADDING, (vint)(0));
+  }
+}
+
+// Taps.flatness in taps.hpp.
+#ifndef FLATNESS
+#error "FLATNESS"
+#endif
+
+typedef struct {
+  float low, high;
+} Interval;
+
+static inline void join(Interval* a, float low, float high) {
+  a->low = fmin(a->low, low);
+  a->high = fmax(a->high, high);
+}
+
+// 0 where nothing is known.
+static inline float middle(Interval a) { return a.low <= a.high ? 0.5f * (a.low + a.high) : 0.0f; }
+static inline float half_range(Interval a) { return a.low <= a.high ? 0.5f * (a.high - a.low) : 0.0f; }
+
+// The footprint of one pass, as CellFootprint has it: see Taps in taps.hpp.
+static inline float pass_footprint(const struct FrameParams* f, global const struct CellParams* cells, int cell_x,
+                                   int cell_y, int axis) {
+  global const struct CellParams* own = cells + cell_y * f->cells_x + cell_x;
+  if (own->counters[COUNT_SCATTERED] == 0) return 0.0f;
+  const float finest = axis == 0 ? own->finest_x : own->finest_y;
+#if PIXEL_WIDTH || JITTER
+  return finest;
+#elif !HAS_DEPTH
+  return -finest;
+#else
+  const int size_px = axis == 0 ? f->width : f->height;
+  const int cell = axis == 0 ? cell_x : cell_y;
+  const int reach_px = (int)fmin(ceil(own->radius_mm * finest), (float)size_px);
+  const int first = max(cell * CELL - reach_px, 0) / CELL;
+  const int last = min(cell * CELL + CELL - 1 + reach_px, size_px - 1) / CELL;
+  Interval depth = {INFINITY, -INFINITY};
+  Interval along = depth;  // the pass
+  Interval across = depth;
+  const int step = axis == 0 ? 1 : f->cells_x;
+  for (int i = first; i <= last; ++i) {
+    global const struct CellParams* its = own + (i - cell) * step;
+    join(&depth, its->depth_low, its->depth_high);
+    join(&along, axis == 0 ? its->along_x_low : its->along_y_low, axis == 0 ? its->along_x_high : its->along_y_high);
+    join(&across, axis == 0 ? its->along_y_low : its->along_x_low, axis == 0 ? its->along_y_high : its->along_x_high);
+  }
+  const int along_px = min((last + 1) * CELL, size_px) - first * CELL;
+  const int across_px = axis == 0 ? min(CELL, f->height - cell_y * CELL) : min(CELL, f->width - cell_x * CELL);
+  const float ray_x = f->slope_x * (cell_x * CELL + 0.5f * CELL - f->center_x);
+  const float ray_y = f->slope_y * (cell_y * CELL + 0.5f * CELL - f->center_y);
+  const float ray_along = axis == 0 ? ray_x : ray_y;
+  const float ray_across = axis == 0 ? ray_y : ray_x;
+  const float slope = axis == 0 ? f->slope_x : f->slope_y;
+  const float g = middle(along);
+  const float dg = half_range(along);
+  const float tangent = (axis == 0 ? f->mm_per_px_x : f->mm_per_px_y) + slope * middle(depth) + ray_along * g;
+  const float change = slope * half_range(depth) + fabs(ray_along) * dg;
+  const float length2 = tangent * tangent + (ray_across * ray_across + 1.0f) * g * g;
+  const float change2 = change * change + (ray_across * ray_across + 1.0f) * dg * dg;
+  const float slopes = along_px * (fabs(g) + dg) + across_px * (fabs(middle(across)) + half_range(across));
+  const float length = sqrt(length2);
+  const int is_flat = change2 <= FLATNESS * FLATNESS * length2 && 2.0f * half_range(depth) <= slopes + length;
+  return is_flat ? -1.0f / length : finest;
+#endif
+}
+
+kernel void footprints(struct FrameParams f, int cells_per_item, global const struct CellParams* cells,
+                       global struct CellFootprint* footprints) {
+  const int cell_y = get_global_id(1);
+  const int first = get_global_id(0) * cells_per_item;
+  for (int cell_x = first; cell_x < min(first + cells_per_item, f.cells_x); ++cell_x) {
+    global struct CellFootprint* its = footprints + cell_y * f.cells_x + cell_x;
+    its->x = pass_footprint(&f, cells, cell_x, cell_y, 0);
+    its->y = pass_footprint(&f, cells, cell_x, cell_y, 1);
+  }
+}

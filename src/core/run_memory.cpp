@@ -1,0 +1,108 @@
+#include "core/run_memory.hpp"
+
+#include <algorithm>
+
+namespace dermis {
+
+namespace {
+
+int round_up(int value, int multiple) { return (value + multiple - 1) / multiple * multiple; }
+
+int parts(int whole, int part) { return (whole + part - 1) / part; }
+
+constexpr int alignment = 64;  ///< elements of a plane, so that the bytes after planes of floats align too
+
+/// window_bytes of window.h.
+std::size_t window_bytes(std::size_t plane, int images, bool has_pixel_width) {
+  const std::size_t planes = 3 * static_cast<std::size_t>(images) + 2 + (has_pixel_width ? 3 : 0);
+  return plane * (planes * sizeof(float) + 2);
+}
+
+}  // namespace
+
+int RunSizes::stride() const { return round_up(width, CELL) + 2 * PADDING; }
+int RunSizes::cells_x() const { return parts(width, CELL); }
+int RunSizes::cells_y() const { return parts(height, CELL); }
+int RunSizes::tiles_x() const { return parts(width, tile_width); }
+int RunSizes::tiles_y() const { return parts(height, tile_height); }
+
+std::size_t RunSizes::frame_plane() const { return static_cast<std::size_t>(stride()) * height; }
+
+std::size_t RunSizes::across_plane() const {
+  if (workers == 0) return frame_plane();
+  // Taps that are turned need the surroundings of the surroundings.
+  const std::size_t reach = static_cast<std::size_t>(farthest_px) * (turns_taps ? 4 : 1) + (turns_taps ? 4 : 0);
+  const std::size_t columns = std::min<std::size_t>(stride(), tile_width + 2 * (reach + CELL) + 2 * PADDING);
+  const std::size_t rows = turns_taps ? std::min<std::size_t>(height, tile_height + 2 * reach) : 1;
+  return static_cast<std::size_t>(round_up(static_cast<int>(columns), alignment)) * rows;
+}
+
+std::size_t RunSizes::down_plane() const {
+  if (workers == 0) return 0;
+  const std::size_t reach = static_cast<std::size_t>(farthest_px) * (turns_taps ? 2 : 1) + 2;
+  const std::size_t turned = turns_taps ? reach + CELL : 0;
+  const std::size_t columns = std::min<std::size_t>(stride(), round_up(tile_width, CELL) + 2 * turned + 2 * PADDING);
+  return static_cast<std::size_t>(round_up(static_cast<int>(columns), alignment)) *
+         std::min<std::size_t>(height, tile_height + 2 * reach);
+}
+
+std::size_t RunSizes::windows_bytes() const {
+  if (workers == 0) return window_bytes(across_plane(), 1, has_pixel_width);
+  const std::size_t band_bytes = 3 * 16 * static_cast<std::size_t>(round_up(tile_width, CELL)) * sizeof(float);
+  return workers * (window_bytes(across_plane(), 1, has_pixel_width) +
+                    window_bytes(down_plane(), terms, has_pixel_width) + band_bytes);
+}
+
+std::size_t RunSizes::bytes(bool holds) const {
+  const std::size_t cells = static_cast<std::size_t>(cells_x()) * cells_y();
+  const std::size_t tiles = static_cast<std::size_t>(tiles_x()) * tiles_y();
+  const std::size_t plane_bytes = frame_plane() * sizeof(float);
+  std::size_t sum =
+      frame_plane() + cells * (sizeof(params::CellParams) + sizeof(params::CellFootprint)) + windows_bytes() + tiles;
+  if (workers == 0) sum += (exact ? 3 : 3 * static_cast<std::size_t>(terms) + 1) * plane_bytes;
+  if (holds || workers == 0) sum += 3 * plane_bytes;
+  return sum;
+}
+
+RunMemory::RunMemory(const cl::Context& context, const RunSizes& wanted) : sizes(wanted) {
+  const auto allocate = [&](std::size_t bytes) { return cl::Buffer(context, CL_MEM_READ_WRITE, bytes); };
+  const std::size_t cell_count = static_cast<std::size_t>(sizes.cells_x()) * sizes.cells_y();
+  const std::size_t plane_bytes = sizes.frame_plane() * sizeof(float);
+  surface = allocate(sizes.frame_plane());
+  cells = allocate(cell_count * sizeof(params::CellParams));
+  footprints = allocate(cell_count * sizeof(params::CellFootprint));
+  windows = allocate(sizes.windows_bytes());
+  kinds = allocate(static_cast<std::size_t>(sizes.tiles_x()) * sizes.tiles_y());
+  counters = allocate(RUN_COUNTERS * sizeof(cl_int));
+  between = kinds;
+  segments = kinds;
+  held = kinds;
+  if (sizes.workers > 0) return;
+  held = allocate(3 * plane_bytes);
+  between = allocate((sizes.exact ? 3 : 3 * static_cast<std::size_t>(sizes.terms)) * plane_bytes);
+  if (!sizes.exact) segments = allocate(plane_bytes);
+}
+
+void RunMemory::need_held(const cl::Context& context) {
+  if (held() == kinds()) held = cl::Buffer(context, CL_MEM_READ_WRITE, 3 * sizes.frame_plane() * sizeof(float));
+}
+
+std::unique_ptr<RunMemory> RunMemoryPool::take(const cl::Context& context, const RunSizes& sizes) {
+  {
+    const std::scoped_lock lock(mutex_);
+    std::erase_if(free_, [&](const auto& memory) { return !(memory->sizes == sizes); });
+    if (!free_.empty()) {
+      auto memory = std::move(free_.back());
+      free_.pop_back();
+      return memory;
+    }
+  }
+  return std::make_unique<RunMemory>(context, sizes);
+}
+
+void RunMemoryPool::give_back(std::unique_ptr<RunMemory> memory) {
+  const std::scoped_lock lock(mutex_);
+  free_.push_back(std::move(memory));
+}
+
+}  // namespace dermis

@@ -1,0 +1,67 @@
+// The device memory of one run, kept from one to the next.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "core/opencl.hpp"
+#include "core/params.hpp"
+#include "dermis/plan.hpp"
+
+namespace dermis {
+
+/// What a plan asks of the memory for a frame of some size.
+struct RunSizes {
+  int width, height;
+  int tile_width, tile_height;
+  int workers;      ///< work-items that take tiles; 0 if the window is the frame
+  int terms;        ///< images of light between the passes
+  int farthest_px;  ///< no tap is farther
+  bool has_pixel_width, turns_taps;
+  bool exact;
+
+  int stride() const;  ///< of planes as large as the frame, elements
+  int cells_x() const;
+  int cells_y() const;
+  int tiles_x() const;
+  int tiles_y() const;
+  std::size_t frame_plane() const;   ///< elements
+  std::size_t across_plane() const;  ///< of the window of the horizontal pass
+  std::size_t down_plane() const;    ///< of the window of the vertical pass; 0 if the window is the frame
+  std::size_t windows_bytes() const;
+  std::size_t bytes(bool holds) const;  ///< of everything
+  bool operator==(const RunSizes&) const = default;
+};
+
+/// Buffers for one run at a time.
+struct RunMemory {
+  RunSizes sizes;
+  cl::Buffer surface;     ///< material of each pixel
+  cl::Buffer cells;       ///< CellParams
+  cl::Buffer footprints;  ///< CellFootprint
+  cl::Buffer windows;
+  cl::Buffer between;   ///< if the window is the frame: light between the passes, or the geometry of the exact integral
+  cl::Buffer segments;  ///< if the window is the frame: along y
+  cl::Buffer held;      ///< light that has to wait for its output; made when needed
+  cl::Buffer kinds;     ///< of tiles
+  cl::Buffer counters;  ///< next tile, bad pixels
+
+  RunMemory(const cl::Context& context, const RunSizes& wanted);
+  void need_held(const cl::Context& context);
+};
+
+/// Memories that are not in use, for several threads.
+class RunMemoryPool {
+ public:
+  /// One for these sizes, new if there is none; those for other sizes are given up.
+  std::unique_ptr<RunMemory> take(const cl::Context& context, const RunSizes& sizes);
+  void give_back(std::unique_ptr<RunMemory> memory);
+
+ private:
+  std::mutex mutex_;
+  std::vector<std::unique_ptr<RunMemory>> free_;
+};
+
+}  // namespace dermis

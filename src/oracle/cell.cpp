@@ -1,0 +1,163 @@
+#include "oracle/cell.hpp"
+
+#include <cmath>
+#include <cstddef>
+
+namespace dermis::oracle {
+
+namespace {
+
+int cells_over(int size_px) { return (size_px + cell_px - 1) / cell_px; }
+
+using Vector = std::array<Bounded, 3>;
+
+/// Two more roundings cover any order of the sum, and factors taken out of it.
+Bounded squared_length(const Vector& v) { return rounded(v[0] * v[0] + v[1] * v[1] + v[2] * v[2], 2); }
+
+}  // namespace
+
+void Cells::Range::add(Bounded value) {
+  low_ = std::min(low_, value.value);
+  high_ = std::max(high_, value.value);
+  error_ = std::max(error_, value.error);
+}
+
+void Cells::Range::add(const Range& other) {
+  low_ = std::min(low_, other.low_);
+  high_ = std::max(high_, other.high_);
+  error_ = std::max(error_, other.error_);
+}
+
+// Halving does not round.
+Bounded Cells::Range::middle() const { return low_ <= high_ ? rounded({(low_ + high_) / 2, error_}) : exact(0); }
+
+Bounded Cells::Range::half_range() const { return low_ <= high_ ? rounded({(high_ - low_) / 2, error_}) : exact(0); }
+
+// The maximum over what surely counts is a device's lower bound, that over what may count the upper.
+void Cells::Largest::add(Bounded value, bool counts, bool unsure) {
+  if (counts) nominal_ = std::max(nominal_, value.value);
+  if (counts && !unsure) low_ = std::max(low_, value.low());
+  if (counts || unsure) high_ = std::max(high_, value.high());
+}
+
+Cells::Cells(const Surface& surface, std::span<const Material> materials, bool may_be_flat)
+    : surface_(surface),
+      may_be_flat_(may_be_flat),
+      columns_(cells_over(surface.width())),
+      rows_(cells_over(surface.height())),
+      cells_(static_cast<std::size_t>(columns_) * rows_) {
+  for (int row = 0; row < rows_; ++row) {
+    for (int column = 0; column < columns_; ++column) {
+      Cell& cell = cells_[static_cast<std::size_t>(row) * columns_ + column];
+      for_each_pixel(column, row, [&](int x, int y) { add_pixel(cell, x, y, materials); });
+    }
+  }
+}
+
+void Cells::add_pixel(Cell& cell, int x, int y, std::span<const Material> materials) const {
+  const SurfacePixel& pixel = surface_.at(x, y);
+  if (pixel.material < 0) return;
+  cell.radius_mm.add(as_float(materials[pixel.material].taps.radius_mm), pixel.wide, pixel.wide_unsure);
+  cell.depth_mm.add(pixel.position_mm[2]);
+  for (const Axis axis : {horizontal, vertical}) {
+    cell.footprint[axis].add(pixel.effective_footprint[axis], pixel.wide, pixel.wide_unsure);
+    const int next_x = axis == horizontal ? x + 1 : x;
+    const int next_y = axis == vertical ? y + 1 : y;
+    if (next_x / cell_px != x / cell_px || next_y / cell_px != y / cell_px) continue;
+    if (!surface_.shows(pixel.material, next_x, next_y)) continue;
+    cell.step_mm[axis].add(surface_.at(next_x, next_y).position_mm[2] - pixel.position_mm[2]);
+  }
+}
+
+/// The cells of a row or a column within reach.
+struct Cells::Surroundings {
+  Range depth_mm;
+  std::array<Range, 2> step_mm;
+  std::array<int, 2> size_px;  ///< columns and rows of pixels that lie in the frame
+};
+
+Cells::Surroundings Cells::surroundings(Axis axis, int column, int row, int reach_cells) const {
+  std::array<int, 2> first{column, row};
+  std::array<int, 2> last{column, row};
+  first[axis] = std::max(first[axis] - reach_cells, 0);
+  last[axis] = std::min(last[axis] + reach_cells, (axis == horizontal ? columns_ : rows_) - 1);
+  Surroundings all{};
+  for (int j = first[vertical]; j <= last[vertical]; ++j) {
+    for (int i = first[horizontal]; i <= last[horizontal]; ++i) {
+      all.depth_mm.add(at(i, j).depth_mm);
+      for (const Axis along : {horizontal, vertical}) all.step_mm[along].add(at(i, j).step_mm[along]);
+    }
+  }
+  const std::array<int, 2> frame_px{surface_.width(), surface_.height()};
+  for (const Axis along : {horizontal, vertical}) {
+    all.size_px[along] = std::min(cell_px * (last[along] + 1), frame_px[along]) - cell_px * first[along];
+  }
+  return all;
+}
+
+Cells::Decision Cells::is_at_most(Bounded a, Bounded b) {
+  return {a.value <= b.value, a.high() > b.low() && a.low() <= b.high()};
+}
+
+Cells::Decision Cells::both(Decision a, Decision b) {
+  const bool surely_not = (!a.yes && !a.unsure) || (!b.yes && !b.unsure);
+  return {a.yes && b.yes, (a.unsure || b.unsure) && !surely_not};
+}
+
+void Cells::add_kinds(Axis axis, int column, int row, int reach_cells, std::vector<CellKind>& kinds) const {
+  const Surroundings near = surroundings(axis, column, row, reach_cells);
+  const View& view = surface_.view();
+  const std::array<int, 2> corner_px{cell_px * column, cell_px * row};
+  const Bounded step = near.step_mm[axis].middle();
+  const Bounded varying_step = near.step_mm[axis].half_range();
+  const Bounded varying_depth = near.depth_mm.half_range();
+
+  Vector change;   // T
+  Vector varying;  // dT
+  for (const Axis i : {horizontal, vertical}) {
+    const Bounded ray = view.ray(i, corner_px[i] + cell_px / 2);
+    change[i] = ray * step;
+    varying[i] = absolute(ray) * varying_step;
+  }
+  change[axis] = change[axis] + view.size_mm(axis, near.depth_mm.middle());
+  varying[axis] = varying[axis] + view.growth_mm(axis, varying_depth);
+  change[2] = step;
+  varying[2] = varying_step;
+
+  const Bounded change2 = squared_length(change);
+  const Bounded length = square_root(change2);
+  const Bounded flatness = exact(Taps::flatness);
+  Bounded largest_range = length;
+  for (const Axis i : {horizontal, vertical}) {
+    const Bounded steepest = absolute(near.step_mm[i].middle()) + near.step_mm[i].half_range();
+    largest_range = largest_range + exact(near.size_px[i]) * steepest;
+  }
+  const Decision even = is_at_most(squared_length(varying), flatness * flatness * change2);
+  const Decision unbroken = is_at_most(exact(2) * varying_depth, rounded(largest_range));
+  const Decision flat = both(even, unbroken);
+  for (const bool is_flat : {flat.yes, !flat.yes}) {
+    if (is_flat != flat.yes && !flat.unsure) continue;
+    kinds.push_back({is_flat, is_flat ? exact(1) / length : at(column, row).footprint[axis].bounded()});
+  }
+}
+
+std::vector<CellKind> Cells::kinds(Axis axis, int column, int row) const {
+  const Cell& cell = at(column, row);
+  const Bounded footprint = cell.footprint[axis].bounded();
+  if (!may_be_flat_) return {{false, footprint}};
+  // What lies within ceil(r) pixels lies in the ceil(r / 16) cells to either side.
+  const Bounded reach_px = cell.radius_mm.bounded() * footprint;
+  const auto cells_within = [&](double reach) {
+    return static_cast<int>(
+        std::ceil(std::clamp(reach / cell_px, 0.0, static_cast<double>(std::max(columns_, rows_)))));
+  };
+  std::vector<CellKind> kinds;
+  const int nominal = cells_within(reach_px.value);
+  add_kinds(axis, column, row, nominal, kinds);
+  for (int reach = cells_within(reach_px.low()); reach <= cells_within(reach_px.high()); ++reach) {
+    if (reach != nominal) add_kinds(axis, column, row, reach, kinds);
+  }
+  return kinds;
+}
+
+}  // namespace dermis::oracle

@@ -1,0 +1,178 @@
+// Which cells are flat, by hand.
+#include <cmath>
+#include <functional>
+#include <set>
+#include <span>
+#include <vector>
+
+#include "catch.hpp"
+#include "dermis/oracle/reference.hpp"
+#include "flat_run.hpp"
+#include "made_frame.hpp"
+#include "made_taps.hpp"
+#include "separable_run.hpp"
+
+namespace dermis::oracle {
+
+namespace {
+
+std::set<int> flat_cells(const MadeFrame& made, const Material& material) {
+  const Reference reference = run_as_is(made, std::span(&material, 1));
+  const MadeFrame turned = transposed(made);
+  const Reference down = run_as_is(turned, std::span(&material, 1));
+  std::set<int> cells;
+  for (int cell = 0; 16 * cell < made.width; ++cell) {
+    const int rung = told(reference, 16 * cell + 8, 2, false);
+    CHECK(told(down, 2, 16 * cell + 8, true) == rung);
+    if (rung != not_flat) cells.insert(cell);
+  }
+  return cells;
+}
+
+/// The rung in the middle of the first cell of a row.
+int first_rung(const MadeFrame& made, const Material& material) {
+  return told(run_as_is(made, std::span(&material, 1)), 2, 2, false);
+}
+
+}  // namespace
+
+TEST_CASE("a tilted plane is flat, with the rung of its own footprint", "[flat]") {
+  // Change of position per pixel: (1 / F, 0, g) along the tilt, 1 / F across it.
+  for (const double px_per_mm : {2.0, 4.0}) {
+    for (const double g : {0.0, 0.125, 0.25, 1.0, -0.5}) {
+      INFO(px_per_mm << " px per mm, depth grows by " << g << " per px");
+      MadeFrame made = row_of_cells(40, [=](int x) { return 100 + g * x; });
+      made.camera = Camera::orthographic(px_per_mm, 8);
+      const Material material = telling_material(5);
+      CHECK(first_rung(made, material) == rung_for(5 / std::hypot(1 / px_per_mm, g)));
+      light_squares(made, true);
+      CHECK(told(run_as_is(made, std::span(&material, 1)), 2, 2, true) == rung_for(5 * 8));
+    }
+  }
+}
+
+TEST_CASE("the change of position under a perspective camera by hand", "[flat]") {
+  // Depth 10 to 10.25 over three pixels, which the middle of the cell, at (8, 8), sees along (6.5 / 40, 7 / 50).
+  MadeFrame made(3, 2, Camera::perspective(40, 50, 1.5, 1));
+  made.depth = {10, 10.125F, 10.25F, 10, 10.125F, 10.25F};
+  light_squares(made, false);
+  const double g = 0.125;
+  const double along = 10.125 / 40 + 6.5 / 40 * g;
+  const double across = 7.0 / 50 * g;
+  for (const double radius_mm : {3.0, 5.0, 7.0}) {
+    const int rung = rung_for(radius_mm / std::sqrt(along * along + across * across + g * g));
+    const Material material = telling_material(radius_mm);
+    CHECK(told(run_as_is(made, std::span(&material, 1)), 1, 0, false) == rung);
+    CHECK(told(run_as_is(transposed(made), std::span(&material, 1)), 0, 1, true) == rung);
+  }
+  // Seen from far off axis the same plane is another: there the depth grows against the ray.
+  made.camera.center_x = 400;
+  const Material material = telling_material(3);
+  const double other = 10.125 / 40 - 392.0 / 40 * g;
+  CHECK(told(run_as_is(made, std::span(&material, 1)), 1, 0, false) ==
+        rung_for(3 / std::sqrt(other * other + across * across + g * g)));
+}
+
+TEST_CASE("a step is not flat within reach, and flat beyond", "[flat]") {
+  // Cells that lie at least partly within ceil(radius) pixels of a cell count with it.
+  using Cells = std::set<int>;
+  CHECK(flat_cells(step(96, 50, 0), telling_material(5)) == Cells{0, 1, 2, 3, 4, 5});
+  CHECK(flat_cells(step(96, 50, 10), telling_material(5)) == Cells{0, 1, 5});
+  CHECK(flat_cells(step(96, 50, 10), telling_material(0.9)) == Cells{0, 1, 5});
+  CHECK(flat_cells(step(96, 50, 10), telling_material(15.5)) == Cells{0, 1, 5});
+  CHECK(flat_cells(step(96, 50, 10), telling_material(16.5)) == Cells{0});
+  CHECK(flat_cells(step(96, 50, 10), telling_material(33)).empty());
+  // Between two cells: the depths of both tell.
+  CHECK(flat_cells(step(96, 48, 10), telling_material(5)) == Cells{0, 1, 4, 5});
+}
+
+TEST_CASE("what lies beside the cells of a pass does not count", "[flat]") {
+  MadeFrame made(20, 40, one_px_per_mm);
+  for (int i = 0; i < 20 * 40; ++i) made.depth.push_back(i / 20 < 20 ? 1 : 9);  // a step between rows 19 and 20
+  light_squares(made, false);
+  const Material material = telling_material(5);
+  const Reference reference = run_as_is(made, std::span(&material, 1));
+  CHECK(told(reference, 4, 4, false) == rung_for(5));
+  CHECK(told(reference, 4, 39, false) == rung_for(5));
+  // A pass along the step does not cross it.
+  CHECK(told(reference, 4, 24, false) == rung_for(5));
+  light_squares(made, true);
+  const Reference down = run_as_is(made, std::span(&material, 1));
+  for (const int y : {4, 24, 36}) CHECK(told(down, 4, y, true) == not_flat);
+}
+
+TEST_CASE("how much the depth may vary", "[flat]") {
+  // A step by D: the differences are 0 and D, T = (1, 0, D / 2), and flat if D^2 / 4 <= (1 + D^2 / 4) / 100.
+  const Material material = telling_material(5);
+  CHECK(first_rung(step(16, 8, 0.19), material) == rung_for(5 / std::hypot(1, 0.095)));
+  CHECK(first_rung(step(16, 8, 0.2), material) == rung_for(5 / std::hypot(1, 0.1)));
+  CHECK(first_rung(step(16, 8, 0.203), material) == not_flat);
+  // Depth that is tilted either way.
+  CHECK(first_rung(row_of_cells(16, [](int x) { return 0.099 * std::abs(x - 8); }), material) == rung_for(5));
+  CHECK(first_rung(row_of_cells(16, [](int x) { return 0.101 * std::abs(x - 8); }), material) == not_flat);
+}
+
+TEST_CASE("surfaces of two materials one behind the other are a step", "[flat]") {
+  // No difference is taken between them. All within the range of what the slopes and a pixel more amount to is flat.
+  const std::vector materials{telling_material(5, 1), telling_material(5, 2)};
+  const auto rung = [&](double slope, double gap_mm) {
+    MadeFrame made = row_of_cells(16, [=](int x) { return 50 + slope * x + (x < 8 ? 0 : gap_mm); });
+    for (std::size_t i = 0; i < made.pixels(); ++i) made.material.push_back(i % 16 < 8 ? 1 : 2);
+    return told(run_as_is(made, materials), 2, 2, false);
+  };
+  CHECK(rung(0, 0.99) == rung_for(5));
+  CHECK(rung(0, 1.01) == not_flat);
+  // 15 slopes and the gap against 16 slopes and |T|.
+  const double change = std::hypot(1, 0.125);
+  CHECK(rung(0.125, 0.125 + change - 0.01) == rung_for(5 / change));
+  CHECK(rung(0.125, 0.125 + change + 0.01) == not_flat);
+}
+
+TEST_CASE("a wide kernel in a cell makes all of it look further", "[flat]") {
+  const std::vector materials{telling_material(5, 1), telling_material(40, 2)};
+  MadeFrame made = step(96, 50, 10);
+  made.material.assign(made.pixels(), 1);
+  CHECK(told(run_as_is(made, materials), 8, 2, false) == rung_for(5));
+  made.material[4 * 96 + 15] = 2;
+  CHECK(told(run_as_is(made, materials), 8, 2, false) == not_flat);
+}
+
+TEST_CASE("pixels with widths of their own and rotated taps are never flat", "[flat]") {
+  Material material = telling_material(5, 1);
+  const MadeFrame made = step(32, 8, 0);
+  CHECK(first_rung(made, material) == rung_for(5));
+  CHECK(first_rung(never_flat(made), material) == not_flat);
+  Options options;
+  options.jitter = 0.01;
+  CHECK(told(run_as_is(made, std::span(&material, 1), options), 8, 2, false) == not_flat);
+  // One material whose width follows the albedo is enough, even if no pixel has it.
+  MadeFrame with_albedo = made;
+  with_albedo.albedo.assign(3 * made.pixels(), 0.5F);
+  with_albedo.material.assign(made.pixels(), 1);
+  std::vector materials{material, telling_material(5, 2)};
+  CHECK(told(run_as_is(with_albedo, materials), 8, 2, false) == rung_for(5));
+  materials[1].width_follows_albedo = true;
+  CHECK(told(run_as_is(with_albedo, materials), 8, 2, false) == not_flat);
+}
+
+TEST_CASE("the bound admits that a cell is flat or not where float32 cannot tell", "[flat]") {
+  const Material material = telling_material(5);
+  const auto bound = [](const MadeFrame& made, const Material& its, int x) {
+    return run_as_is(made, std::span(&its, 1)).scattered_bound(x, 2);
+  };
+  const double f2 = static_cast<double>(Taps::flatness) * static_cast<double>(Taps::flatness);
+  const double just = 2 * std::sqrt(f2 / (1 - f2));
+  const auto at_zero = [](double by_mm) {  // about 0, where float32 is finest
+    return row_of_cells(16, [=](int x) { return x < 8 ? 0 : by_mm; });
+  };
+  const double taken = 2 * (0.125 + rung_for(5 / std::hypot(1, 0.1)) / 1024.0);
+  CHECK(bound(at_zero(just), material, 4) == Approx(taken).epsilon(1e-3));
+  CHECK(bound(at_zero(just * 0.9999), material, 4) < 1e-4);
+  CHECK(bound(at_zero(just * 1.0001), material, 4) < 1e-4);
+  // A reach of 16 pixels, or of a little more: 17.
+  CHECK(bound(step(96, 50, 10), telling_material(16), 24) > 0.2);
+  CHECK(bound(step(96, 50, 10), telling_material(15.9), 24) < 1e-3);
+  CHECK(bound(step(96, 50, 10), telling_material(16.1), 24) < 1e-3);
+}
+
+}  // namespace dermis::oracle
