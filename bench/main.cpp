@@ -10,11 +10,11 @@
 #include "paper.hpp"
 #include "picture_report.hpp"
 #include "plots.hpp"
-#include "stress.hpp"
 #include "progress.hpp"
 #include "registry.hpp"
 #include "report.hpp"
 #include "start_up.hpp"
+#include "stress.hpp"
 
 namespace {
 

@@ -110,9 +110,9 @@ struct Rung {
   std::vector<std::array<float, 3>> core_gain;  ///< per term: times the core's light
   std::vector<int> offsets_px;                  ///< one symmetric pair of taps each, at + and -; ascending, > 0
   std::vector<TapWeight> weights;               ///< of all terms of the first pair, then of the second, ...
-  /// What a tap is worth on a flat cell, for kernel radii nearest to each eighth of the rung: of all terms of the centre, then
-  /// of the first pair, ... Multiples of 2^-24; of a normalised term they sum to exactly 1. The centre's is used if the
-  /// term is normalised.
+  /// What a tap is worth on a flat cell, for kernel radii nearest to each eighth of the rung: of all terms of the
+  /// centre, then of the first pair, ... Multiples of 2^-24; of a normalised term they sum to exactly 1. The centre's
+  /// is used if the term is normalised.
   std::array<std::vector<std::array<float, 3>>, 8> flat_weights;
 };
 
@@ -138,13 +138,13 @@ struct Rung {
 /// along the pass; if that rung is -1 each term is its sum at one point.
 ///
 /// On a flat cell the weights are those of the rung: w_i = flat_weights_i, whatever the depth; and its rung in a pass
-/// along x, and the eighth of the rung, is the nearest to the kernel radius radius_mm / |T|, as the surface is seen at an
-/// angle. A cell is flat in a pass if no pixel has a width of its own and no tap is rotated, and if there is no depth,
-/// or the surface within reach is nearly a plane. Of the pixels with a material in the cells of the same row (column,
-/// for the vertical pass) that lie at least partly within ceil(largest radius_mm of the cell's materials * F) pixels of
-/// the cell, let z be the depths and g, h the differences between the depths of neighbours of the same material within
-/// a cell, in x and in y; with their middles z', g', h' and half ranges dz, dg, dh (0 where there is no pair), and x',
-/// y' = change of position with depth along the ray through the middle of the cell,
+/// along x, and the eighth of the rung, is the nearest to the kernel radius radius_mm / |T|, as the surface is seen at
+/// an angle. A cell is flat in a pass if no pixel has a width of its own and no tap is rotated, and if there is no
+/// depth, or the surface within reach is nearly a plane. Of the pixels with a material in the cells of the same row
+/// (column, for the vertical pass) that lie at least partly within ceil(largest radius_mm of the cell's materials * F)
+/// pixels of the cell, let z be the depths and g, h the differences between the depths of neighbours of the same
+/// material within a cell, in x and in y; with their middles z', g', h' and half ranges dz, dg, dh (0 where there is no
+/// pair), and x', y' = change of position with depth along the ray through the middle of the cell,
 ///
 ///     T  = (size(z') + x' g', y' g', g')                change of position per pixel
 ///     dT = (size(dz) + |x'| dg, |y'| dg, dg)            how much it may vary; size(dz) = dz / focal length

@@ -379,8 +379,8 @@ TEST_CASE("the numbers of --stats-json add up") {
   CHECK(tiles["flat"].get<int>() + tiles["curved"].get<int>() > 0);
   const auto& pixels = stats["pixels"];
   CHECK(pixels["total"] == width * height);
-  CHECK(pixels["total"].get<int>() == pixels["scattered"].get<int>() + pixels["without_material"].get<int>() +
-                                          pixels["narrow"].get<int>());
+  CHECK(pixels["total"].get<int>() ==
+        pixels["scattered"].get<int>() + pixels["without_material"].get<int>() + pixels["narrow"].get<int>());
   const std::vector<float> ids = Picture::read(scene.path).plane("ViewLayer.IndexMA.X");
   const auto of_material = std::count(ids.begin(), ids.end(), 1.0F);
   CHECK(pixels["scattered"] == of_material);
