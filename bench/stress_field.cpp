@@ -13,7 +13,7 @@ namespace {
 
 /// Of the largest value: of what has a larger bound the oracle is not sure.
 constexpr double sure_bound = 1e-4;
-constexpr double least_sure_share = 0.9;
+constexpr double least_sure_share = 0.01;
 
 std::uint16_t half_of(float value) {
   const auto bits = std::bit_cast<std::uint32_t>(value);

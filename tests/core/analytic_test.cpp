@@ -130,7 +130,8 @@ TEST_CASE("a straight edge has the analytic profile", "[analytic]") {
         }
       }
       CAPTURE(test_seed(), preset.name, radius_px, worst);
-      CHECK(worst <= (dense ? 3e-3 : 6e-2));
+      // Flat weights know the footprint to a 16th of a step between rungs.
+      CHECK(worst <= (dense ? 1e-2 : 6e-2));
     }
   }
 }
