@@ -9,11 +9,15 @@ typedef struct {
   int zeroes_bad;
 } Outputs;
 
-// `after`: the light after scattering; not looked at where a pixel takes none.
+// `after`: the light after scattering; not looked at where a pixel takes none. `all_finite`: all that is read is.
 SHARED void compose(const struct FrameParams* f, const Inputs* in, const InputRows* rows, const Outputs* out,
-                    vrgb after, int x, int y) {
+                    vrgb after, int all_finite, int x, int y) {
   const vint inside = AS_MASK(x + int_lane_numbers() < (vint)(f->width));
   const vint m = load_bytes(rows->surface + x);
+  if (all_finite && !out->writes_result && !any_bit(AS_MASK(m == 0) | AS_MASK((m & NARROW_BIT) != 0))) {
+    if (out->writes_scattered) write_rgb(out->scattered, &out->scattered_at, x, y, after, inside);
+    return;
+  }
   const vrgb input = read_rgb(&rows->light, x);
   const vrgb albedo = read_albedo(rows, x);
   const vrgb before = scattering_light(f, input, albedo);

@@ -18,6 +18,6 @@ kernel void finish(struct FrameParams f, global const uchar* surface, global con
   const int x_begin = (int)get_global_id(0) * columns;
   for (int x = x_begin; x < min(x_begin + columns, f.width); x += V) {
     if (!copies && kinds[y / f.tile_height * f.tiles_x + x / f.tile_width] < TILE_UNLIT) continue;
-    compose(&f, &in, &rows, &out, load_rgb(held, (size_t)f.stride * f.height, surface_at(&f, x, y)), x, y);
+    compose(&f, &in, &rows, &out, load_rgb(held, (size_t)f.stride * f.height, surface_at(&f, x, y)), 0, x, y);
   }
 }

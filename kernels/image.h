@@ -84,24 +84,48 @@ FORCED_INLINE vfloat read_values(Row row, int x) {
   return read_scattered(row, x);
 }
 
+// Whether an image's channels are planes of floats.
+static inline int is_planar(const struct ImageParams* p) { return p->format == FORMAT_F32 && p->pixel_stride == 4; }
+
 // The three channels of a row.
 typedef struct {
   Row r, g, b;
+  int planar;
 } RgbRow;
 
 static inline RgbRow rgb_row_of(global const uchar* image, const struct ImageParams* p, int width, int y) {
-  const RgbRow row = {row_of(image, p, width, y, 0), row_of(image, p, width, y, 1), row_of(image, p, width, y, 2)};
+  const RgbRow row = {row_of(image, p, width, y, 0), row_of(image, p, width, y, 1), row_of(image, p, width, y, 2),
+                      is_planar(p)};
   return row;
 }
 
-FORCED_INLINE vrgb read_rgb(const RgbRow* row, int x) {
+// Fetches into the caches what pixel x of a row needs.
+FORCED_INLINE void fetch_ahead(global const uchar* row, int pixel_stride, int x) {
+#if __has_builtin(__builtin_prefetch)
+  __builtin_prefetch(row + x * (Bytes)pixel_stride);
+#endif
+}
+
+SHARED vrgb read_any_rgb(const RgbRow* row, int x) {
   const vrgb value = {read_values(row->r, x), read_values(row->g, x), read_values(row->b, x)};
   return value;
 }
 
+FORCED_INLINE vrgb read_rgb(const RgbRow* row, int x) {
+#if V > 1
+  if (row->planar && x >= 0 && x + V <= row->r.width) {
+    const vrgb value = {load_floats((global const float*)row->r.at + x),
+                        load_floats((global const float*)row->g.at + x),
+                        load_floats((global const float*)row->b.at + x)};
+    return value;
+  }
+#endif
+  return read_any_rgb(row, x);
+}
+
 // Writes the lanes where the mask is set; x is in the frame.
-SHARED void write_values(global uchar* image, const struct ImageParams* p, int x, int y, int channel, vfloat value,
-                         vint mask) {
+FORCED_INLINE void write_values(global uchar* image, const struct ImageParams* p, int x, int y, int channel,
+                                vfloat value, vint mask) {
 #if V > 1
   if (p->format == FORMAT_F32 && p->pixel_stride == 4 && !any_bit(~mask)) {
     global uchar* at = image + byte_at(p, x, y, channel);
@@ -122,7 +146,7 @@ SHARED void write_values(global uchar* image, const struct ImageParams* p, int x
 #undef WRITE_LANE
 }
 
-static inline void write_rgb(global uchar* image, const struct ImageParams* p, int x, int y, vrgb value, vint mask) {
+SHARED void write_rgb(global uchar* image, const struct ImageParams* p, int x, int y, vrgb value, vint mask) {
   write_values(image, p, x, y, 0, value.r, mask);
   write_values(image, p, x, y, 1, value.g, mask);
   write_values(image, p, x, y, 2, value.b, mask);

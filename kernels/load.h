@@ -75,8 +75,8 @@ FORCED_INLINE vint bad_lanes(vint surface, vrgb input, vrgb albedo, vrgb value) 
 }
 
 // Material of V pixels; their depth and width.
-SHARED void load_surface(const Window* w, const struct FrameParams* f, const InputRows* rows,
-                         global const struct MaterialParams* materials, int x, int y) {
+FORCED_INLINE void load_surface(const Window* w, const struct FrameParams* f, const InputRows* rows,
+                                global const struct MaterialParams* materials, int x, int y) {
   const size_t at = pixel_at(w, x, y);
   const vint m = load_bytes(rows->surface + x);
   store_bytes(w->surface + at, m);

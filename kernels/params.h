@@ -28,17 +28,14 @@ typedef long long Bytes;
 #define NARROW_BIT 0x80
 #define MAX_MATERIALS 127
 
-// Counters of a run.
+// Counters of a run, the last four of pixels.
 #define COUNTER_NEXT_TILE 0
-#define COUNTER_BAD_PIXELS 1
-#define COUNTER_WORKERS 2
-#define RUN_COUNTERS 3
-
-// Counters of a cell.
-#define COUNT_SCATTERED 0
-#define COUNT_NARROW 1
-#define COUNT_WITHOUT_MATERIAL 2
-#define COUNTERS 3
+#define COUNTER_WORKERS 1
+#define COUNTER_BAD 2
+#define COUNTER_SCATTERED 3
+#define COUNTER_NARROW 4
+#define COUNTER_FLAT 5
+#define RUN_COUNTERS 6
 
 // What became of a tile.
 #define TILE_WITHOUT_MATERIAL 0
@@ -98,18 +95,39 @@ struct CellParams {
   float along_y_low, along_y_high;
   float finest_x, finest_y;  // largest footprint of a pixel that scatters, px per mm, times its width factor
   float radius_mm;           // largest one of the materials that scatter
-  int counters[COUNTERS];
+  int material;              // byte of all pixels of the plane of materials; 0 if they differ
+  int scattered;             // pixels
+  int narrow;
 };
 
-// The footprint of a cell that its rungs are chosen by, px per mm: negative if the cell is flat, 0 if nothing scatters.
-struct CellFootprint {
-  float x, y;
+// What one pass does in a cell.
+struct CellPass {
+  float footprint;  // that its rungs are chosen by, px per mm: negative if the cell is flat, 0 if nothing scatters
+  int material;     // 1 + the index of the only one that taps fall on, all in the frame; 0 if there is more than that
 };
+
+struct CellPasses {
+  struct CellPass x, y;
+};
+
+// How the pixels of a cell are scattered in one pass.
+struct ChoiceParams {
+  int way;
+  int material;     // index
+  int rung;         // index
+  int flat_weight;  // index
+};
+
+// Taps fall on anything, or all of them on the material of the cell, which is flat or curved.
+#define WAY_GENERAL 0
+#define WAY_FLAT 1
+#define WAY_CURVED 2
 
 // Part of a frame in memory: see window.h.
 struct WindowParams {
   int x_begin, x_end;
   int y_begin, y_end;
+  int row_mask;
   int row_stride;
 };
 

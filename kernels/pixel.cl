@@ -17,22 +17,22 @@ kernel void segments(struct FrameParams f, struct WindowParams window, global uc
   struct FrameParams f, struct WindowParams window, global const struct MaterialParams *materials,             \
       global const struct TermParams *terms, global const struct RungParams *rungs, global const int *offsets, \
       global const struct WeightParams *weights, global const struct FlatWeight *flat_weights,                 \
-      global const struct RotationParams *rotations, uint seed, global const struct CellFootprint *footprints, \
+      global const struct RotationParams *rotations, uint seed, global const struct CellPasses *passes,        \
       global uchar *memory, long plane, global float *between, global float *down_segment
 
 kernel void scatter_x(SCATTER_ARGUMENTS) {
-  const Tables tables = {materials, terms, rungs, offsets, weights, flat_weights, rotations, footprints, seed};
+  const Tables tables = {materials, terms, rungs, offsets, weights, flat_weights, rotations, passes, seed};
   const Window w = window_in(window, plane, 1, memory);
   const Pass pass = pass_from(&w, 0);
   const int x = get_global_id(0);
   const int y = get_global_id(1);
   vrgb result[TERMS];
-  scatter_pixels(result, &f, &pass, &tables, 0, x, y);
+  scatter_pixels(result, &f, &pass, &tables, x, y);
   for (int t = 0; t < TERMS; ++t) store_rgb(between + 3 * t * w.plane, w.plane, pixel_at(&w, x, y), result[t]);
 }
 
 kernel void scatter_y(SCATTER_ARGUMENTS, global float* held) {
-  const Tables tables = {materials, terms, rungs, offsets, weights, flat_weights, rotations, footprints, seed};
+  const Tables tables = {materials, terms, rungs, offsets, weights, flat_weights, rotations, passes, seed};
   Window w = window_in(window, plane, 1, memory);
   w.light = between;
   w.segment = down_segment;
@@ -40,6 +40,6 @@ kernel void scatter_y(SCATTER_ARGUMENTS, global float* held) {
   const int x = get_global_id(0);
   const int y = get_global_id(1);
   vrgb result[TERMS];
-  scatter_pixels(result, &f, &pass, &tables, 0, x, y);
+  scatter_pixels(result, &f, &pass, &tables, x, y);
   store_rgb(held, (size_t)f.stride * f.height, surface_at(&f, x, y), result[0]);
 }

@@ -21,5 +21,5 @@ kernel void prepare(struct FrameParams f, struct WindowParams window, global con
     EACH_LANE(COUNT_LANE)
 #undef COUNT_LANE
   }
-  if (count > 0) atomic_add(counters + COUNTER_BAD_PIXELS, count);
+  if (count > 0) atomic_add(counters + COUNTER_BAD, count);
 }

@@ -17,7 +17,7 @@ typedef struct {
   global const struct WeightParams* weights;
   global const struct FlatWeight* flat_weights;
   global const struct RotationParams* rotations;
-  global const struct CellFootprint* footprints;
+  global const struct CellPasses* passes;
   uint seed;
 } Tables;
 
@@ -26,7 +26,6 @@ typedef struct {
   const Window* from;
   int axis;
   int x_step, y_step;
-  int step;           // elements from a pixel to the next along the pass
   size_t next_light;  // from the image of one term to that of the next
 } Pass;
 
@@ -36,8 +35,13 @@ typedef struct {
 } Sums;
 
 FORCED_INLINE Pass pass_from(const Window* w, int axis) {
-  const Pass pass = {w, axis, axis == 0, axis == 1, axis == 0 ? 1 : w->row_stride, axis == 0 ? 0 : 3 * w->plane};
+  const Pass pass = {w, axis, axis == 0, axis == 1, axis == 0 ? 0 : 3 * w->plane};
   return pass;
+}
+
+// The pixel an offset away.
+FORCED_INLINE size_t tap_at(const Pass* s, int x, int y, int offset) {
+  return pixel_at(s->from, x + s->x_step * offset, y + s->y_step * offset);
 }
 
 FORCED_INLINE vrgb load_term(const Pass* s, int t, size_t at) {
@@ -62,24 +66,23 @@ FORCED_INLINE int in_frame(const struct FrameParams* f, const Pass* s, int x, in
 }
 
 // A flat cell where every tap falls on the material.
-FORCED_INLINE void scatter_clean(vrgb* result, const Pass* s, const Tables* tables,
-                                 global const struct RungParams* rung, global const struct FlatWeight* weights, int x,
-                                 int y) {
+FORCED_INLINE void scatter_clean(vrgb* result, const Pass* s, global const int* offsets, int pairs,
+                                 global const struct FlatWeight* weights, int x, int y) {
   const size_t at = pixel_at(s->from, x, y);
-  global const int* offsets = tables->offsets + rung->first_offset;
 #pragma unroll
   for (int t = 0; t < TERMS; ++t) {
     result[t] = scaled(weights[t].rgb, load_term(s, t, at));
   }
 #pragma nounroll
-  for (int i = 0; i < rung->pairs; ++i) {
-    const long offset = offsets[i] * (long)s->step;
+  for (int i = 0; i < pairs; ++i) {
+    const size_t after = tap_at(s, x, y, offsets[i]);
+    const size_t before = tap_at(s, x, y, -offsets[i]);
     weights += TERMS;
     vrgb pair;
 #pragma unroll
     for (int t = 0; t < TERMS; ++t) {
       if (t == 0 || s->axis == 1) {
-        pair = sum_rgb(load_term(s, t, at + offset), load_term(s, t, at - offset));
+        pair = sum_rgb(load_term(s, t, after), load_term(s, t, before));
       }
       result[t].r = fma(weights[t].rgb[0], pair.r, result[t].r);
       result[t].g = fma(weights[t].rgb[1], pair.g, result[t].g);
@@ -113,7 +116,7 @@ FORCED_INLINE void scatter_flat(vrgb* result, const struct FrameParams* f, const
     for (int side = -1; side <= 1; side += 2) {
       const int offset = side * offsets[i];
       if (!in_frame(f, s, x, y, offset)) continue;
-      const size_t tap = at + offset * (long)s->step;
+      const size_t tap = tap_at(s, x, y, offset);
       const vint same = AS_MASK((load_bytes(s->from->material + tap) & MATERIAL_MASK) == material);
       there += keep(same, (vfloat)(1.0f));
 #pragma unroll
@@ -177,19 +180,22 @@ FORCED_INLINE void add_taps(Sums* sums, const Target* target, global const struc
   }
 }
 
-// Adds the pixels an offset away along the pass.
+// Adds the pixels an offset away along the pass. `clean`: they are of the material.
 FORCED_INLINE void add_straight(Sums* sums, const struct FrameParams* f, const Pass* s, const Target* target,
-                                global const struct WeightParams* its, size_t at, int x, int y, int offset) {
-  if (!in_frame(f, s, x, y, offset)) return;
-  const size_t tap = at + offset * (long)s->step;
-  const vint same = AS_MASK((load_bytes(s->from->material + tap) & MATERIAL_MASK) == target->material);
+                                global const struct WeightParams* its, int x, int y, int offset, const int clean) {
+  if (!clean && !in_frame(f, s, x, y, offset)) return;
+  const size_t tap = tap_at(s, x, y, offset);
+  vfloat segment = load_floats(s->from->segment + tap);
+  if (!clean) {
+    // Elsewhere there is no surface to weigh, and the light is finite.
+    segment = keep(AS_MASK((load_bytes(s->from->material + tap) & MATERIAL_MASK) == target->material), segment);
+  }
   const vfloat r_squared =
       squared_distance_along(f, &target->points, load_floats(s->from->depth + tap), (float)offset, s->axis);
   vrgb light[TERMS];
 #pragma unroll
   for (int t = 0; t < TERMS; ++t) light[t] = load_term(s, t, tap);
-  // Elsewhere there is no surface to weigh, and the light is finite.
-  add_taps(sums, target, its, r_squared, keep(same, load_floats(s->from->segment + tap)), light);
+  add_taps(sums, target, its, r_squared, segment, light);
 }
 
 #if JITTER
@@ -239,10 +245,10 @@ FORCED_INLINE void rotated_axis(global const struct RotationParams* rotations, v
 }
 #endif
 
-// The lanes of one material on a curved surface.
+// The lanes of one material on a curved surface. `clean`: all taps fall on it.
 FORCED_INLINE void scatter_curved(vrgb* result, const struct FrameParams* f, const Pass* s, const Tables* tables,
                                   global const struct RungParams* rung, global const struct TermParams* terms,
-                                  vint material, int x, int y) {
+                                  vint material, int x, int y, const int clean) {
   const size_t at = pixel_at(s->from, x, y);
   global const struct WeightParams* weights = tables->weights + rung->first_weight;
   global const int* offsets = tables->offsets + rung->first_offset;
@@ -282,7 +288,7 @@ FORCED_INLINE void scatter_curved(vrgb* result, const struct FrameParams* f, con
     weights += TERMS;
 #pragma nounroll
     for (int side = -1; side <= 1; side += 2) {
-      add_straight(&sums, f, s, &target, weights, at, x, y, side * offsets[i]);
+      add_straight(&sums, f, s, &target, weights, x, y, side * offsets[i], clean);
     }
   }
 #pragma unroll
@@ -303,14 +309,31 @@ static inline Step step_of(float radius_px, int is_flat, int rungs) {
   return step;
 }
 
-// The lanes of all materials: of each term in the horizontal pass, their sum as the first one in the vertical pass.
-// `clean`: the pass reads one material without gaps as far as taps reach.
-FORCED_INLINE void scatter_pixels(vrgb* result, const struct FrameParams* f, const Pass* s, const Tables* tables,
-                                  int clean, int x, int y) {
+static inline struct CellPass cell_pass(const struct FrameParams* f, const Tables* tables, int cell_x, int cell_y,
+                                        int axis) {
+  global const struct CellPasses* passes = tables->passes + (size_t)cell_y * f->cells_x + cell_x;
+  return axis == 0 ? passes->x : passes->y;
+}
+
+static inline int first_flat_weight(global const struct RungParams* rung, int part) {
+  return rung->first_flat_weight + part * (rung->pairs + 1) * TERMS;
+}
+
+// The sum of all terms.
+FORCED_INLINE vrgb total_of(global const struct TermParams* terms, const vrgb* values) {
+  vrgb total = scaled(terms[0].scale, values[0]);
+#pragma unroll
+  for (int t = 1; t < TERMS; ++t) total = sum_rgb(total, scaled(terms[t].scale, values[t]));
+  return total;
+}
+
+// The lanes of all materials, whatever taps fall on: of each term in the horizontal pass, their sum as the first one in
+// the vertical pass.
+FORCED_INLINE void scatter_pixels(vrgb* result, const struct FrameParams* f, const Pass* s, const Tables* tables, int x,
+                                  int y) {
   const size_t at = pixel_at(s->from, x, y);
   const vint m = load_bytes(s->from->material + at);
-  global const struct CellFootprint* cell = tables->footprints + (size_t)(y / CELL) * f->cells_x + x / CELL;
-  const float footprint = s->axis == 0 ? cell->x : cell->y;
+  const float footprint = cell_pass(f, tables, x / CELL, y / CELL, s->axis).footprint;
   for (int t = 0; t < TERMS; ++t) result[t] = same_rgb((vfloat)(0.0f));
   for (int i = 0; i < MATERIALS; ++i) {
     const vint material = (vint)(i + 1);
@@ -324,28 +347,20 @@ FORCED_INLINE void scatter_pixels(vrgb* result, const struct FrameParams* f, con
     const int has_taps = step.rung >= 0 && any_bit(mine);
     if (has_taps) {
       global const struct RungParams* rung = tables->rungs + its->first_rung + step.rung;
-      global const struct FlatWeight* flat_weights =
-          tables->flat_weights + rung->first_flat_weight + step.part * (rung->pairs + 1) * TERMS;
       if (footprint > 0.0f) {
-        scatter_curved(scattered, f, s, tables, rung, terms, material, x, y);
-      } else if (clean) {
-        scatter_clean(scattered, s, tables, rung, flat_weights, x, y);
+        scatter_curved(scattered, f, s, tables, rung, terms, material, x, y, 0);
       } else {
-        scatter_flat(scattered, f, s, tables, rung, flat_weights, terms, material, x, y);
+        scatter_flat(scattered, f, s, tables, rung, tables->flat_weights + first_flat_weight(rung, step.part), terms,
+                     material, x, y);
       }
     }
-    vrgb total = same_rgb((vfloat)(0.0f));
 #pragma unroll
     for (int t = 0; t < TERMS; ++t) {
       // Without taps a term is its sum at one point.
-      vrgb value = scaled(terms[t].sum, load_term(s, t, at));
-      if (has_taps) value = select_rgb(value, scattered[t], mine);
-      if (s->axis == 0) {
-        result[t] = select_rgb(result[t], value, lanes);
-      } else {
-        total = t == 0 ? scaled(terms[0].scale, value) : sum_rgb(total, scaled(terms[t].scale, value));
-      }
+      const vrgb alone = scaled(terms[t].sum, load_term(s, t, at));
+      scattered[t] = has_taps ? select_rgb(alone, scattered[t], mine) : alone;
+      if (s->axis == 0) result[t] = select_rgb(result[t], scattered[t], lanes);
     }
-    if (s->axis == 1) result[0] = select_rgb(result[0], total, lanes);
+    if (s->axis == 1) result[0] = select_rgb(result[0], total_of(terms, scattered), lanes);
   }
 }

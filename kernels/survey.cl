@@ -98,73 +98,128 @@ static inline int count_lanes(vint mask) {
   return -(c.x + c.y);
 }
 
-static inline void survey_cell(const struct FrameParams* f, const SurveyInputs* in,
-                               global const struct MaterialParams* materials, int cell_x, int cell_y,
-                               global uchar* surface, global struct CellParams* cell) {
-  const Range nothing = {(vfloat)(INFINITY), (vfloat)(-INFINITY)};
-  Range depth = nothing;
-  Range along_x = nothing;
-  Range along_y = nothing;
-  vfloat size_x = nothing.low;  // smallest ones of pixels that scatter, mm
-  vfloat size_y = nothing.low;
-  vint scattered = (vint)(0);
-  vint narrow = (vint)(0);
-  float radius_mm = 0.0f;
-  const int x = cell_x * CELL;
-  const int y_begin = cell_y * CELL;
-  const int y_end = min(y_begin + CELL, f->height);
+// What a cell's pixels have in common.
+typedef struct {
+  Range depth, along_x, along_y;
+  vfloat size_x, size_y;  // smallest ones of pixels that scatter, mm
+  vint scattered, narrow;
+  float radius_mm;
+} Seen;
+
+// Without the last lane, whose next pixel is in another cell.
+static inline Range without_last(Range a) {
+  const Range range = {a.low.s0123456789abcdee, a.high.s0123456789abcdee};
+  return range;
+}
+
+// A cell of one material without gaps. Returns whether none of it is narrow; if some is, it has seen nothing.
+static inline int see_whole(Seen* seen, const struct FrameParams* f, global const struct MaterialParams* its,
+                            const PixelRow* rows, int height) {
+  for (int i = 0; i < height; ++i) {
+    seen->depth.low = lower(seen->depth.low, rows[i].depth);
+    seen->depth.high = higher(seen->depth.high, rows[i].depth);
+  }
+  // Sizes grow with depth.
+  const float high = highest(seen->depth.high);
+  const float coarsest_mm = fmax(fma(high, f->slope_x, f->mm_per_px_x), fma(high, f->slope_y, f->mm_per_px_y));
+  const float widest = fmax(fmax(its->relative_width[0], its->relative_width[1]), its->relative_width[2]);
+  if (widest * its->radius_mm < 0.5f * coarsest_mm) return 0;
+  seen->size_x = fma(seen->depth.low, (vfloat)(f->slope_x), (vfloat)(f->mm_per_px_x));
+  seen->size_y = fma(seen->depth.low, (vfloat)(f->slope_y), (vfloat)(f->mm_per_px_y));
+  seen->scattered = (vint)(-height);
+  seen->radius_mm = its->radius_mm;
+#if HAS_DEPTH && !JITTER
+  for (int i = 0; i < height; ++i) {
+    const vfloat z = rows[i].depth;
+    const vfloat to_next = z.s123456789abcdeff - z;
+    seen->along_x.low = lower(seen->along_x.low, to_next);
+    seen->along_x.high = higher(seen->along_x.high, to_next);
+    if (i == 0) continue;
+    const vfloat from_above = z - rows[i - 1].depth;
+    seen->along_y.low = lower(seen->along_y.low, from_above);
+    seen->along_y.high = higher(seen->along_y.high, from_above);
+  }
+  seen->along_x = without_last(seen->along_x);
+#endif
+  return 1;
+}
+
+// Any cell.
+static inline void see_mixed(Seen* seen, const struct FrameParams* f, global const struct MaterialParams* materials,
+                             PixelRow* rows, int height) {
   const vint has_next = (vint)(-1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, 0);
+  const vfloat nothing = (vfloat)(INFINITY);
   vint above_material = (vint)(0);
   vfloat above_depth = (vfloat)(0.0f);
-  for (int y = y_begin; y < y_end; ++y) {
-    PixelRow row = read_row(f, in, materials, x, y);
-    const vint m = row.material;
+  for (int row = 0; row < height; ++row) {
+    const vint m = rows[row].material;
+    const vfloat z = rows[row].depth;
     const vint has_material = AS_MASK(m != 0);
     if (any_bit(has_material)) {
-      const vfloat size_x_mm = fma(row.depth, (vfloat)(f->slope_x), (vfloat)(f->mm_per_px_x));
-      const vfloat size_y_mm = fma(row.depth, (vfloat)(f->slope_y), (vfloat)(f->mm_per_px_y));
+      const vfloat size_x_mm = fma(z, (vfloat)(f->slope_x), (vfloat)(f->mm_per_px_x));
+      const vfloat size_y_mm = fma(z, (vfloat)(f->slope_y), (vfloat)(f->mm_per_px_y));
       const vfloat finest_mm = lower(size_x_mm, size_y_mm);
       for (int i = 0; i < MATERIALS; ++i) {
         const vint mine = AS_MASK(m == i + 1);
         if (!any_bit(mine)) continue;
         global const struct MaterialParams* its = materials + i;
-        const vfloat widest = widest_factor(its, row.k);
+        const vfloat widest = widest_factor(its, rows[row].k);
         const vint is_narrow = mine & AS_MASK(widest * its->radius_mm < 0.5f * finest_mm);
         const vint scatters = mine & ~is_narrow;
-        row.material |= is_narrow & NARROW_BIT;
-        narrow += is_narrow;
-        scattered += scatters;
-        if (any_bit(scatters)) radius_mm = fmax(radius_mm, its->radius_mm);
-        size_x = lower(size_x, select(nothing.low, PIXEL_WIDTH ? size_x_mm / widest : size_x_mm, scatters));
-        size_y = lower(size_y, select(nothing.low, PIXEL_WIDTH ? size_y_mm / widest : size_y_mm, scatters));
+        rows[row].material |= is_narrow & NARROW_BIT;
+        seen->narrow += is_narrow;
+        seen->scattered += scatters;
+        if (any_bit(scatters)) seen->radius_mm = fmax(seen->radius_mm, its->radius_mm);
+        seen->size_x = lower(seen->size_x, select(nothing, PIXEL_WIDTH ? size_x_mm / widest : size_x_mm, scatters));
+        seen->size_y = lower(seen->size_y, select(nothing, PIXEL_WIDTH ? size_y_mm / widest : size_y_mm, scatters));
       }
 #if HAS_DEPTH && !PIXEL_WIDTH && !JITTER
-      widen(&depth, row.depth, has_material);
+      widen(&seen->depth, z, has_material);
       const vint next_material = m.s123456789abcdeff;
-      const vfloat next_depth = row.depth.s123456789abcdeff;
-      widen(&along_x, next_depth - row.depth, has_material & has_next & AS_MASK(next_material == m));
-      widen(&along_y, row.depth - above_depth, has_material & AS_MASK(above_material == m));
+      widen(&seen->along_x, z.s123456789abcdeff - z, has_material & has_next & AS_MASK(next_material == m));
+      widen(&seen->along_y, z - above_depth, has_material & AS_MASK(above_material == m));
 #endif
     }
     above_material = m;
-    above_depth = row.depth;
-    store_bytes(surface + (size_t)y * f->stride + PADDING + x, row.material);
+    above_depth = z;
   }
-  cell->depth_low = lowest(depth.low);
-  cell->depth_high = highest(depth.high);
-  cell->along_x_low = lowest(along_x.low);
-  cell->along_x_high = highest(along_x.high);
-  cell->along_y_low = lowest(along_y.low);
-  cell->along_y_high = highest(along_y.high);
+}
+
+static inline void survey_cell(const struct FrameParams* f, const SurveyInputs* in,
+                               global const struct MaterialParams* materials, int cell_x, int cell_y,
+                               global uchar* surface, global struct CellParams* cell) {
+  const Range nothing = {(vfloat)(INFINITY), (vfloat)(-INFINITY)};
+  Seen seen = {nothing, nothing, nothing, nothing.low, nothing.low, (vint)(0), (vint)(0), 0.0f};
+  const int x = cell_x * CELL;
+  const int y = cell_y * CELL;
+  const int height = min(CELL, f->height - y);
+  PixelRow rows[CELL];
+  vint others = (vint)(0);
+  for (int i = 0; i < height; ++i) {
+    rows[i] = read_row(f, in, materials, x, y + i);
+    others |= rows[i].material ^ (vint)(rows[0].material.s0);
+  }
+  const int material = any_bit(others) ? 0 : rows[0].material.s0;
+  cell->material = material;
+  if (PIXEL_WIDTH || material == 0 || !see_whole(&seen, f, materials + material - 1, rows, height)) {
+    seen.depth = nothing;
+    see_mixed(&seen, f, materials, rows, height);
+    if (any_bit(seen.narrow)) cell->material = 0;
+  }
+  for (int i = 0; i < height; ++i) store_bytes(surface + (size_t)(y + i) * f->stride + PADDING + x, rows[i].material);
+  cell->depth_low = lowest(seen.depth.low);
+  cell->depth_high = highest(seen.depth.high);
+  cell->along_x_low = lowest(seen.along_x.low);
+  cell->along_x_high = highest(seen.along_x.high);
+  cell->along_y_low = lowest(seen.along_y.low);
+  cell->along_y_high = highest(seen.along_y.high);
   // The largest footprint is that of the smallest pixel.
-  const int any_scattered = count_lanes(scattered);
-  cell->finest_x = any_scattered > 0 ? 1.0f / lowest(size_x) : 0.0f;
-  cell->finest_y = any_scattered > 0 ? 1.0f / lowest(size_y) : 0.0f;
-  cell->radius_mm = radius_mm;
-  const int pixels = min(CELL, f->width - x) * (y_end - y_begin);
-  cell->counters[COUNT_SCATTERED] = any_scattered;
-  cell->counters[COUNT_NARROW] = count_lanes(narrow);
-  cell->counters[COUNT_WITHOUT_MATERIAL] = pixels - any_scattered - cell->counters[COUNT_NARROW];
+  const int any_scattered = count_lanes(seen.scattered);
+  cell->finest_x = any_scattered > 0 ? 1.0f / lowest(seen.size_x) : 0.0f;
+  cell->finest_y = any_scattered > 0 ? 1.0f / lowest(seen.size_y) : 0.0f;
+  cell->radius_mm = seen.radius_mm;
+  cell->scattered = any_scattered;
+  cell->narrow = count_lanes(seen.narrow);
 }
 
 kernel void survey(struct FrameParams f, int cells_per_item, global const struct MaterialParams* materials,
@@ -205,17 +260,13 @@ static inline void join(Interval* a, float low, float high) {
 static inline float middle(Interval a) { return a.low <= a.high ? 0.5f * (a.low + a.high) : 0.0f; }
 static inline float half_range(Interval a) { return a.low <= a.high ? 0.5f * (a.high - a.low) : 0.0f; }
 
-// The footprint of one pass, as CellFootprint has it: see Taps in taps.hpp.
-static inline float pass_footprint(const struct FrameParams* f, global const struct CellParams* cells, int cell_x,
-                                   int cell_y, int axis) {
+// See Taps in taps.hpp.
+static inline struct CellPass pass_over(const struct FrameParams* f, global const struct CellParams* cells, int cell_x,
+                                        int cell_y, int axis) {
   global const struct CellParams* own = cells + cell_y * f->cells_x + cell_x;
-  if (own->counters[COUNT_SCATTERED] == 0) return 0.0f;
+  struct CellPass pass = {0.0f, 0};
+  if (own->scattered == 0) return pass;
   const float finest = axis == 0 ? own->finest_x : own->finest_y;
-#if PIXEL_WIDTH || JITTER
-  return finest;
-#elif !HAS_DEPTH
-  return -finest;
-#else
   const int size_px = axis == 0 ? f->width : f->height;
   const int cell = axis == 0 ? cell_x : cell_y;
   const int reach_px = (int)fmin(ceil(own->radius_mm * finest), (float)size_px);
@@ -225,6 +276,23 @@ static inline float pass_footprint(const struct FrameParams* f, global const str
   Interval along = depth;  // the pass
   Interval across = depth;
   const int step = axis == 0 ? 1 : f->cells_x;
+  // The footprint of a rung may be a 256th larger than that of the cell.
+  const int farthest_px = reach_px + reach_px / 256 + 1;
+  const int farthest_first = cell * CELL - farthest_px;
+  const int farthest_last = cell * CELL + CELL - 1 + farthest_px;
+  pass.material = own->material;
+  if (farthest_first < 0 || farthest_last >= size_px) {
+    pass.material = 0;
+  } else {
+    for (int i = farthest_first / CELL; i <= farthest_last / CELL; ++i) {
+      if (own[(i - cell) * step].material != own->material) pass.material = 0;
+    }
+  }
+#if PIXEL_WIDTH || JITTER
+  pass.footprint = finest;
+#elif !HAS_DEPTH
+  pass.footprint = -finest;
+#else
   for (int i = first; i <= last; ++i) {
     global const struct CellParams* its = own + (i - cell) * step;
     join(&depth, its->depth_low, its->depth_high);
@@ -247,17 +315,27 @@ static inline float pass_footprint(const struct FrameParams* f, global const str
   const float slopes = along_px * (fabs(g) + dg) + across_px * (fabs(middle(across)) + half_range(across));
   const float length = sqrt(length2);
   const int is_flat = change2 <= FLATNESS * FLATNESS * length2 && 2.0f * half_range(depth) <= slopes + length;
-  return is_flat ? -1.0f / length : finest;
+  pass.footprint = is_flat ? -1.0f / length : finest;
 #endif
+  return pass;
 }
 
-kernel void footprints(struct FrameParams f, int cells_per_item, global const struct CellParams* cells,
-                       global struct CellFootprint* footprints) {
+kernel void choose_passes(struct FrameParams f, int cells_per_item, global const struct CellParams* cells,
+                          global struct CellPasses* passes, global volatile int* counters) {
   const int cell_y = get_global_id(1);
   const int first = get_global_id(0) * cells_per_item;
+  int scattered = 0;
+  int narrow = 0;
+  int flat = 0;
   for (int cell_x = first; cell_x < min(first + cells_per_item, f.cells_x); ++cell_x) {
-    global struct CellFootprint* its = footprints + cell_y * f.cells_x + cell_x;
-    its->x = pass_footprint(&f, cells, cell_x, cell_y, 0);
-    its->y = pass_footprint(&f, cells, cell_x, cell_y, 1);
+    const int cell = cell_y * f.cells_x + cell_x;
+    passes[cell].x = pass_over(&f, cells, cell_x, cell_y, 0);
+    passes[cell].y = pass_over(&f, cells, cell_x, cell_y, 1);
+    scattered += cells[cell].scattered;
+    narrow += cells[cell].narrow;
+    if (passes[cell].x.footprint < 0.0f && passes[cell].y.footprint < 0.0f) flat += cells[cell].scattered;
   }
+  atomic_add(counters + COUNTER_SCATTERED, scattered);
+  atomic_add(counters + COUNTER_NARROW, narrow);
+  atomic_add(counters + COUNTER_FLAT, flat);
 }

@@ -10,8 +10,7 @@ static inline int farthest_tap(const struct FrameParams* f, const Tables* tables
   int farthest = 0;
   for (int cy = y_begin / CELL; cy * CELL < y_end; ++cy) {
     for (int cx = x_begin / CELL; cx * CELL < x_end; ++cx) {
-      global const struct CellFootprint* cell = tables->footprints + (size_t)cy * f->cells_x + cx;
-      const float footprint = axis == 0 ? cell->x : cell->y;
+      const float footprint = cell_pass(f, tables, cx, cy, axis).footprint;
       for (int m = 0; m < MATERIALS; ++m) {
         const int index =
             step_of(fabs(footprint) * tables->materials[m].radius_mm, footprint < 0.0f, tables->materials[m].rungs)
@@ -25,30 +24,22 @@ static inline int farthest_tap(const struct FrameParams* f, const Tables* tables
   return farthest;
 }
 
-// What was seen of the light and the materials of some rows of a tile.
+// What was seen of the light of a tile and its surroundings.
 typedef struct {
-  vrgb light;     // of the first pixel with light, the same in all lanes
-  vint material;  // of that pixel, the same in all lanes
+  float light[3];  // of the first pixel with a material
   int has_first;
-  int bad;          // pixels of the tile itself
-  int last_lit;     // rows, the last that were not
-  int last_varied;  // - all of the same light
-  int last_mixed;   // - all of one material without gaps
+  int bad_pixels;   // of the tile itself
+  int last_varied;  // row: the last one where not all light is that of the first pixel
+  int last_bad;     // - that is not finite everywhere
 } Sight;
 
-// Row y of a window.
-typedef struct {
-  int lit, varied, mixed;
-} RowSight;
-
 static inline void find_first(Sight* sight, const LoadedLight* loaded) {
-#define FIRST_LANE(lane)                                                    \
-  if (!sight->has_first && LANE(loaded->material, lane) != 0) {             \
-    sight->light.r = (vfloat)(LANE(loaded->light.r, lane));                 \
-    sight->light.g = (vfloat)(LANE(loaded->light.g, lane));                 \
-    sight->light.b = (vfloat)(LANE(loaded->light.b, lane));                 \
-    sight->material = (vint)(LANE(loaded->material, lane) & MATERIAL_MASK); \
-    sight->has_first = 1;                                                   \
+#define FIRST_LANE(lane)                                        \
+  if (!sight->has_first && LANE(loaded->material, lane) != 0) { \
+    sight->light[0] = LANE(loaded->light.r, lane);              \
+    sight->light[1] = LANE(loaded->light.g, lane);              \
+    sight->light[2] = LANE(loaded->light.b, lane);              \
+    sight->has_first = 1;                                       \
   }
   EACH_LANE(FIRST_LANE)
 #undef FIRST_LANE
@@ -59,7 +50,7 @@ static inline void copy_tile(const struct FrameParams* f, const Inputs* in, cons
                              int y_begin, int y_end) {
   for (int y = y_begin; y < y_end; ++y) {
     const InputRows rows = input_rows(f, in, y);
-    for (int x = x_begin; x < x_end; x += V) compose(f, in, &rows, out, same_rgb((vfloat)(0.0f)), x, y);
+    for (int x = x_begin; x < x_end; x += V) compose(f, in, &rows, out, same_rgb((vfloat)(0.0f)), 0, x, y);
   }
 }
 
@@ -70,177 +61,407 @@ static inline void copy_tile(const struct FrameParams* f, const Inputs* in, cons
 typedef struct {
   Window across;
   Window down;
-  global float* band;  // light after both passes, 3 planes of BAND rows
-  int x_begin, x_end;  // that the horizontal pass computes
+  global float* band;                   // light after both passes, 3 planes of BAND rows
+  global struct ChoiceParams* choices;  // of a row of cells in the horizontal pass
+  int x_begin, x_end;                   // that the horizontal pass computes
   int y_begin, y_end;
   int own_x_begin, own_x_end;  // of the tile
   int own_y_begin, own_y_end;
-  int has_depth_terms;
+  int curved_across;  // some cell
+  int curved_down;
   int reach_y;  // of the taps of the vertical pass
 } Windows;
 
-// One row of the horizontal pass's window.
-static inline RowSight load_row(Sight* sight, const Windows* w, const struct FrameParams* f, const Inputs* in,
-                                const Tables* tables, int y) {
+// How many rows before their turn the images are fetched.
+#define ROWS_AHEAD 2
+
+// Light of one row of the horizontal pass's window.
+SHARED void load_light_row(Sight* sight, const Windows* w, const struct FrameParams* f, const Inputs* in, int y) {
   const Window* across = &w->across;
   const InputRows rows = input_rows(f, in, y);
-  vint lit = (vint)(0);
+  const int in_down = y >= w->down.y_begin && y < w->down.y_end;
+  const int is_own = y >= w->own_y_begin && y < w->own_y_end;
+  // Rows of a tile are too short for a processor to see them coming.
+  const InputRows later = input_rows(f, in, min(y + ROWS_AHEAD, across->y_end - 1));
   vint varied = (vint)(0);
-  vint mixed = (vint)(0);
   for (int x = across->x_begin - PADDING; x < across->x_end + PADDING; x += V) {
-    if (w->has_depth_terms) load_surface(across, f, &rows, tables->materials, x, y);
+    fetch_ahead(later.light.r.at, later.light.r.pixel_stride, x);
+    fetch_ahead(later.light.g.at, later.light.g.pixel_stride, x);
+    fetch_ahead(later.light.b.at, later.light.b.pixel_stride, x);
     const LoadedLight loaded = load_light(across, f, &rows, x, y);
-    if (any_bit(loaded.bad) && x >= w->own_x_begin && x < w->own_x_end && y >= w->own_y_begin && y < w->own_y_end) {
-#define COUNT_LANE(lane) sight->bad -= LANE(loaded.bad, lane);
-      EACH_LANE(COUNT_LANE)
+    if (in_down && x >= w->x_begin && x < w->x_end) {
+      store_bytes(w->down.material + pixel_at(&w->down, x, y), loaded.material);
+    }
+    if (any_bit(loaded.bad)) {
+      sight->last_bad = y;
+      if (is_own && x >= w->own_x_begin && x < w->own_x_end) {
+#define COUNT_LANE(lane) sight->bad_pixels -= LANE(loaded.bad, lane);
+        EACH_LANE(COUNT_LANE)
 #undef COUNT_LANE
+      }
     }
     const vint there = AS_MASK(loaded.material != 0);
     if (!sight->has_first && any_bit(there)) find_first(sight, &loaded);
-    // Light is 0 where there is no material.
-    lit |= as_vint(loaded.light.r) | as_vint(loaded.light.g) | as_vint(loaded.light.b);
-    varied |=
-        ((as_vint(loaded.light.r) ^ as_vint(sight->light.r)) | (as_vint(loaded.light.g) ^ as_vint(sight->light.g)) |
-         (as_vint(loaded.light.b) ^ as_vint(sight->light.b))) &
-        there;
-    mixed |= ((loaded.material & MATERIAL_MASK) ^ sight->material) | ~there;
+    varied |= ((as_vint(loaded.light.r) ^ as_vint((vfloat)(sight->light[0]))) |
+               (as_vint(loaded.light.g) ^ as_vint((vfloat)(sight->light[1]))) |
+               (as_vint(loaded.light.b) ^ as_vint((vfloat)(sight->light[2])))) &
+              there;
   }
-  const RowSight row = {any_bit(lit), any_bit(varied), any_bit(mixed)};
-  if (row.lit) sight->last_lit = y;
-  if (row.varied) sight->last_varied = y;
-  if (row.mixed) sight->last_mixed = y;
-  if (w->has_depth_terms) {
-    for (int x = across->x_begin; x < across->x_end; x += V) {
-      store_floats(across->segment + pixel_at(across, x, y), segment_length(f, across, x, y, 0));
+  if (any_bit(varied)) sight->last_varied = y;
+}
+
+// Surface of one row of a window.
+SHARED void load_surface_row(const Window* w, const struct FrameParams* f, const Inputs* in,
+                             global const struct MaterialParams* materials, int x_begin, int x_end, int y) {
+  const InputRows rows = input_rows(f, in, y);
+  for (int x = x_begin; x < x_end; x += V) load_surface(w, f, &rows, materials, x, y);
+}
+
+SHARED void measure_segments(const Window* w, const struct FrameParams* f, int axis, int x_begin, int x_end, int y) {
+  for (int x = x_begin; x < x_end; x += V) {
+    store_floats(w->segment + pixel_at(w, x, y), segment_length(f, w, x, y, axis));
+  }
+}
+
+static inline struct ChoiceParams choice_of(const struct FrameParams* f, const Tables* tables, int cell_x, int cell_y,
+                                            int axis) {
+  struct ChoiceParams choice = {WAY_GENERAL, 0, 0, 0};
+  const struct CellPass pass = cell_pass(f, tables, cell_x, cell_y, axis);
+  if (JITTER || pass.material == 0) return choice;
+  choice.material = pass.material - 1;
+  global const struct MaterialParams* its = tables->materials + choice.material;
+  const Step step = step_of(fabs(pass.footprint) * its->radius_mm, pass.footprint < 0.0f, its->rungs);
+  if (step.rung < 0) return choice;
+  choice.way = pass.footprint < 0.0f ? WAY_FLAT : WAY_CURVED;
+  choice.rung = its->first_rung + step.rung;
+  choice.flat_weight = first_flat_weight(tables->rungs + choice.rung, step.part);
+  return choice;
+}
+
+static inline int same_choice(global const struct ChoiceParams* a, global const struct ChoiceParams* b) {
+  return a->way == b->way && a->material == b->material && a->rung == b->rung && a->flat_weight == b->flat_weight;
+}
+
+// Three planes, each with its own place.
+typedef struct {
+  global float *r, *g, *b;  // of the first pixel
+  size_t row_stride;
+  int streams;  // past the caches: nobody reads it soon
+} Planes;
+
+FORCED_INLINE void store_planes(const Planes* to, size_t at, vrgb value) {
+#if V > 1 && __has_builtin(__builtin_nontemporal_store)
+  if (to->streams) {
+    __builtin_nontemporal_store(value.r, (global vfloat*)(to->r + at));
+    __builtin_nontemporal_store(value.g, (global vfloat*)(to->g + at));
+    __builtin_nontemporal_store(value.b, (global vfloat*)(to->b + at));
+    return;
+  }
+#endif
+#if V > 1
+  *(global unaligned_floats*)(to->r + at) = value.r;
+  *(global unaligned_floats*)(to->g + at) = value.g;
+  *(global unaligned_floats*)(to->b + at) = value.b;
+#else
+  to->r[at] = value.r;
+  to->g[at] = value.g;
+  to->b[at] = value.b;
+#endif
+}
+
+// Flat cells of one row.
+SHARED void across_flat(const Windows* w, const Tables* tables, struct ChoiceParams choice, int x_begin, int x_end,
+                        int y) {
+  const Window from = w->across;
+  const Pass pass = pass_from(&from, 0);
+  const size_t plane = w->down.plane;
+  global float* to = w->down.light + pixel_at(&w->down, 0, y);
+  global const struct RungParams* rung = tables->rungs + choice.rung;
+  global const int* offsets = tables->offsets + rung->first_offset;
+  global const struct FlatWeight* weights = tables->flat_weights + choice.flat_weight;
+  const int pairs = rung->pairs;
+  for (int x = x_begin; x < x_end; x += V) {
+    vrgb result[TERMS];
+    scatter_clean(result, &pass, offsets, pairs, weights, x, y);
+    for (int t = 0; t < TERMS; ++t) store_rgb(to + 3 * t * plane, plane, x, result[t]);
+  }
+}
+
+// Curved cells of one row.
+SHARED void across_curved(const Windows* w, const struct FrameParams* f, const Tables* tables,
+                          struct ChoiceParams choice, int x_begin, int x_end, int y) {
+  const Window from = w->across;
+  const Pass pass = pass_from(&from, 0);
+  const size_t plane = w->down.plane;
+  global float* to = w->down.light + pixel_at(&w->down, 0, y);
+  global const struct TermParams* terms = tables->terms + tables->materials[choice.material].first_term;
+  for (int x = x_begin; x < x_end; x += V) {
+    vrgb result[TERMS];
+    scatter_curved(result, f, &pass, tables, tables->rungs + choice.rung, terms, (vint)(choice.material + 1), x, y, 1);
+    for (int t = 0; t < TERMS; ++t) store_rgb(to + 3 * t * plane, plane, x, result[t]);
+  }
+}
+
+// Any cells of one row.
+SHARED void across_any(const Windows* w, const struct FrameParams* f, const Tables* tables, int x_begin, int x_end,
+                       int y) {
+  const Pass pass = pass_from(&w->across, 0);
+  const size_t plane = w->down.plane;
+  global float* to = w->down.light + pixel_at(&w->down, 0, y);
+  for (int x = x_begin; x < x_end; x += V) {
+    vrgb result[TERMS];
+    scatter_pixels(result, f, &pass, tables, x, y);
+    for (int t = 0; t < TERMS; ++t) store_rgb(to + 3 * t * plane, plane, x, result[t]);
+  }
+}
+
+// The horizontal pass over one row of uniform light: a term is its sum times the light.
+SHARED void across_uniform(const Windows* w, const Tables* tables, const Sight* sight, int y) {
+  const vrgb light = {(vfloat)(sight->light[0]), (vfloat)(sight->light[1]), (vfloat)(sight->light[2])};
+  for (int x = w->x_begin; x < w->x_end; x += V) {
+    const vint m = load_bytes(w->across.material + pixel_at(&w->across, x, y)) & MATERIAL_MASK;
+    for (int t = 0; t < TERMS; ++t) {
+      vrgb result = same_rgb((vfloat)(0.0f));
+      for (int i = 0; i < MATERIALS; ++i) {
+        global const struct TermParams* term = tables->terms + tables->materials[i].first_term + t;
+        result = select_rgb(result, scaled(term->sum, light), AS_MASK(m == i + 1));
+      }
+      store_rgb(w->down.light + 3 * t * w->down.plane, w->down.plane, pixel_at(&w->down, x, y), result);
     }
   }
-  if (y >= w->down.y_begin && y < w->down.y_end) {
-    for (int x = w->x_begin; x < w->x_end; x += V) {
-      store_bytes(w->down.material + pixel_at(&w->down, x, y), load_bytes(across->material + pixel_at(across, x, y)));
-    }
-  }
-  return row;
 }
 
 // The horizontal pass over one row.
 static inline void scatter_row(const Windows* w, const struct FrameParams* f, const Tables* tables, const Sight* sight,
-                               RowSight row, int skips, int y) {
-  const Pass pass = pass_from(&w->across, 0);
-  for (int x = w->x_begin; x < w->x_end; x += V) {
-    vrgb result[TERMS];
-    if (skips && !row.varied) {
-      // A term of uniform light is its sum times the light.
-      const vint m = load_bytes(w->across.material + pixel_at(&w->across, x, y)) & MATERIAL_MASK;
-      for (int t = 0; t < TERMS; ++t) result[t] = same_rgb((vfloat)(0.0f));
-      for (int i = 0; i < MATERIALS && row.lit; ++i) {
-        const vint lanes = AS_MASK(m == i + 1);
-        for (int t = 0; t < TERMS; ++t) {
-          global const struct TermParams* term = tables->terms + tables->materials[i].first_term + t;
-          result[t] = select_rgb(result[t], scaled(term->sum, sight->light), lanes);
-        }
-      }
+                               int skips, int y) {
+  if (skips && sight->last_varied != y) {
+    across_uniform(w, tables, sight, y);
+    return;
+  }
+  const int cells = (w->x_end - w->x_begin + CELL - 1) / CELL;
+  if (y % CELL == 0 || y == w->y_begin) {
+    for (int i = 0; i < cells; ++i) w->choices[i] = choice_of(f, tables, w->x_begin / CELL + i, y / CELL, 0);
+  }
+  int end = 0;
+  for (int i = 0; i < cells; i = end) {
+    for (end = i + 1; end < cells && same_choice(w->choices + i, w->choices + end);) ++end;
+    const int x = w->x_begin + i * CELL;
+    const int x_end = min(w->x_begin + end * CELL, w->x_end);
+    const int way = sight->last_bad == y ? WAY_GENERAL : w->choices[i].way;
+    if (way == WAY_FLAT) {
+      across_flat(w, tables, w->choices[i], x, x_end, y);
+    } else if (way == WAY_CURVED) {
+      across_curved(w, f, tables, w->choices[i], x, x_end, y);
     } else {
-      scatter_pixels(result, f, &pass, tables, !row.mixed, x, y);
-    }
-    for (int t = 0; t < TERMS; ++t) {
-      store_rgb(w->down.light + 3 * t * w->down.plane, w->down.plane, pixel_at(&w->down, x, y), result[t]);
+      across_any(w, f, tables, x, x_end, y);
     }
   }
 }
 
-// Surface and segments of the vertical pass's window.
-static inline void load_down(const Windows* w, const struct FrameParams* f, const Inputs* in, const Tables* tables) {
-  for (int y = w->down.y_begin; y < w->down.y_end; ++y) {
-    const InputRows rows = input_rows(f, in, y);
-    for (int x = w->x_begin; x < w->x_end; x += V) load_surface(&w->down, f, &rows, tables->materials, x, y);
-  }
-  for (int y = w->y_begin; y < w->y_end; ++y) {
-    for (int x = w->x_begin; x < w->x_end; x += V) {
-      store_floats(w->down.segment + pixel_at(&w->down, x, y), segment_length(f, &w->down, x, y, 1));
+// A flat cell, down.
+SHARED void down_flat(const Windows* w, const Tables* tables, struct ChoiceParams choice, const Planes* to, int x_begin,
+                      int x_end, int y_begin, int y_end) {
+  const Window from = w->down;
+  const Pass pass = pass_from(&from, 1);
+  const Planes target = *to;
+  global const struct RungParams* rung = tables->rungs + choice.rung;
+  global const int* offsets = tables->offsets + rung->first_offset;
+  global const struct FlatWeight* weights = tables->flat_weights + choice.flat_weight;
+  const int pairs = rung->pairs;
+  global const struct TermParams* terms = tables->terms + tables->materials[choice.material].first_term;
+  for (int y = y_begin; y < y_end; ++y) {
+    for (int x = x_begin; x < x_end; x += V) {
+      vrgb result[TERMS];
+      scatter_clean(result, &pass, offsets, pairs, weights, x, y);
+      store_planes(&target, y * target.row_stride + x, total_of(terms, result));
     }
   }
 }
 
-// The vertical pass over some rows of the tile, and their outputs.
-static inline void scatter_down(const Windows* w, const struct FrameParams* f, const Inputs* in, const Outputs* out,
-                                const Tables* tables, const Sight* sight, int skips, global float* held, int y_begin,
-                                int y_end) {
+// A curved cell, down.
+SHARED void down_curved(const Windows* w, const struct FrameParams* f, const Tables* tables, struct ChoiceParams choice,
+                        const Planes* to, int x_begin, int x_end, int y_begin, int y_end) {
+  const Window from = w->down;
+  const Pass pass = pass_from(&from, 1);
+  global const struct TermParams* terms = tables->terms + tables->materials[choice.material].first_term;
+  for (int y = y_begin; y < y_end; ++y) {
+    for (int x = x_begin; x < x_end; x += V) {
+      vrgb result[TERMS];
+      scatter_curved(result, f, &pass, tables, tables->rungs + choice.rung, terms, (vint)(choice.material + 1), x, y,
+                     1);
+      store_planes(to, y * to->row_stride + x, total_of(terms, result));
+    }
+  }
+}
+
+// Any cell, down.
+SHARED void down_any(const Windows* w, const struct FrameParams* f, const Tables* tables, const Planes* to, int x_begin,
+                     int x_end, int y_begin, int y_end) {
   const Pass pass = pass_from(&w->down, 1);
-  const int first_row = y_begin - w->reach_y;
-  const int clean = first_row >= 0 && y_end + w->reach_y <= f->height && sight->last_mixed < first_row;
-  const int is_unlit = skips && sight->last_lit < first_row;
-  const int is_uniform = skips && sight->last_varied < first_row;
-  const size_t row_stride = (w->own_x_end - w->own_x_begin + CELL - 1) & ~(CELL - 1);
-  const size_t plane = row_stride * BAND;
-  if (!is_unlit && !is_uniform) {
-    // Columns of 16 pixels one after the other: the rows that taps of a column fall on stay in the first-level cache.
-    for (int column = w->own_x_begin; column < w->own_x_end; column += CELL) {
-      for (int y = y_begin; y < y_end; ++y) {
-        for (int x = column; x < min(column + CELL, w->own_x_end); x += V) {
-          vrgb result[TERMS];
-          scatter_pixels(result, f, &pass, tables, clean, x, y);
-          store_rgb(w->band, plane, (y - y_begin) * row_stride + (x - w->own_x_begin), result[0]);
-        }
-      }
+  for (int y = y_begin; y < y_end; ++y) {
+    for (int x = x_begin; x < x_end; x += V) {
+      vrgb result[TERMS];
+      scatter_pixels(result, f, &pass, tables, x, y);
+      store_planes(to, y * to->row_stride + x, result[0]);
     }
   }
+}
+
+// Where light after both passes goes if the outputs are to be composed of it: a band of a tile.
+static inline Planes band_of(const Windows* w, int y_begin) {
+  const size_t row_stride = (w->own_x_end - w->own_x_begin + CELL - 1) & ~(CELL - 1);
+  Planes band;
+  band.r = w->band - y_begin * row_stride - w->own_x_begin;
+  band.g = band.r + BAND * row_stride;
+  band.b = band.g + BAND * row_stride;
+  band.row_stride = row_stride;
+  band.streams = 0;
+  return band;
+}
+
+// Where it goes if it is the output.
+static inline Planes output_of(const struct FrameParams* f, const Outputs* out, global float* held) {
+  Planes planes = {0, 0, 0, 0, 0};
+  if (held) {
+    planes.r = held + PADDING;
+    planes.g = planes.r + (size_t)f->stride * f->height;
+    planes.b = planes.g + (size_t)f->stride * f->height;
+    planes.row_stride = f->stride;
+#if !LIT
+  } else if (f->albedo_mix == 0.0f && out->writes_scattered && !out->writes_result && is_planar(&out->scattered_at) &&
+             out->scattered_at.row_stride % 4 == 0) {
+    global uchar* first = out->scattered + out->scattered_at.offset;
+    planes.r = (global float*)first;
+    planes.g = (global float*)(first + out->scattered_at.channel_stride);
+    planes.b = (global float*)(first + 2 * (Bytes)out->scattered_at.channel_stride);
+    planes.row_stride = out->scattered_at.row_stride / 4;
+    planes.streams = (((size_t)planes.r | (size_t)planes.g | (size_t)planes.b | out->scattered_at.row_stride) &
+                      (sizeof(vfloat) - 1)) == 0;
+#endif
+  }
+  return planes;
+}
+
+// The outputs of some pixels of a tile: `uniform`, or what is in the band.
+static inline void compose_band(const Windows* w, const struct FrameParams* f, const Inputs* in, const Outputs* out,
+                                const vrgb* uniform, int all_finite, global float* held, const Planes* band,
+                                int x_begin, int x_end, int y_begin, int y_end) {
   for (int y = y_begin; y < y_end; ++y) {
     const InputRows rows = input_rows(f, in, y);
-    for (int x = w->own_x_begin; x < w->own_x_end; x += V) {
-      const vrgb after = is_unlit     ? same_rgb((vfloat)(0.0f))
-                         : is_uniform ? sight->light
-                                      : load_rgb(w->band, plane, (y - y_begin) * row_stride + (x - w->own_x_begin));
+    for (int x = x_begin; x < x_end; x += V) {
+      const size_t at = y * band->row_stride + x;
+      vrgb after;
+      if (uniform) {
+        after = *uniform;
+      } else {
+        after.r = load_floats(band->r + at);
+        after.g = load_floats(band->g + at);
+        after.b = load_floats(band->b + at);
+      }
       if (held) {
         store_rgb(held, (size_t)f->stride * f->height, surface_at(f, x, y), after);
       } else {
-        compose(f, in, &rows, out, after, x, y);
+        compose(f, in, &rows, out, after, all_finite, x, y);
       }
     }
   }
+}
+
+// The vertical pass over some rows of one row of cells of the tile, and their outputs.
+static inline void scatter_down(const Windows* w, const struct FrameParams* f, const Inputs* in, const Outputs* out,
+                                const Tables* tables, const Sight* sight, int skips, global float* held, int y_begin,
+                                int y_end) {
+  const int has_bad = sight->last_bad >= y_begin - w->reach_y;
+  const Planes band = band_of(w, y_begin);
+  if (skips && sight->last_varied < y_begin - w->reach_y) {
+    const vrgb light = {(vfloat)(sight->light[0]), (vfloat)(sight->light[1]), (vfloat)(sight->light[2])};
+    compose_band(w, f, in, out, &light, !has_bad, held, &band, w->own_x_begin, w->own_x_end, y_begin, y_end);
+    return;
+  }
+  const Planes output = output_of(f, out, held);
+  // Column of cells after column: the rows that taps of a column fall on stay in the first-level cache.
+  for (int x = w->own_x_begin; x < w->own_x_end; x += CELL) {
+    const int x_end = min(x + CELL, w->own_x_end);
+    struct ChoiceParams choice = choice_of(f, tables, x / CELL, y_begin / CELL, 1);
+    if (has_bad) choice.way = WAY_GENERAL;
+    const int composes = choice.way == WAY_GENERAL || !output.r;
+    const Planes* to = composes ? &band : &output;
+    if (choice.way == WAY_FLAT) {
+      down_flat(w, tables, choice, to, x, x_end, y_begin, y_end);
+    } else if (choice.way == WAY_CURVED) {
+      down_curved(w, f, tables, choice, to, x, x_end, y_begin, y_end);
+    } else {
+      down_any(w, f, tables, to, x, x_end, y_begin, y_end);
+    }
+    if (composes) compose_band(w, f, in, out, 0, !has_bad, held, &band, x, x_end, y_begin, y_end);
+  }
+}
+
+// Whether some cell of a rectangle is curved in a pass.
+static inline int any_curved(const struct FrameParams* f, const Tables* tables, int x_begin, int x_end, int y_begin,
+                             int y_end, int axis) {
+  for (int cy = y_begin / CELL; cy * CELL < y_end; ++cy) {
+    for (int cx = x_begin / CELL; cx * CELL < x_end; ++cx) {
+      if (cell_pass(f, tables, cx, cy, axis).footprint > 0.0f) return 1;
+    }
+  }
+  return 0;
 }
 
 // Both passes.
 static inline Sight scatter_rows(const Windows* w, const struct FrameParams* f, const Inputs* in, const Outputs* out,
                                  const Tables* tables, int skips, global float* held) {
-  Sight sight = {same_rgb((vfloat)(0.0f)), (vint)(0), 0, 0, INT_MIN, INT_MIN, INT_MIN};
-  if (w->has_depth_terms) load_down(w, f, in, tables);
+  Sight sight = {{0.0f, 0.0f, 0.0f}, 0, 0, INT_MIN, INT_MIN};
+  const Window* across = &w->across;
+  const Window* down = &w->down;
   int next = w->own_y_begin;
-  for (int y = w->across.y_begin; y < w->across.y_end; ++y) {
-    const RowSight row = load_row(&sight, w, f, in, tables, y);
-#if !JITTER
-    scatter_row(w, f, tables, &sight, row, skips, y);
-    const int band_end = min(next + BAND, w->own_y_end);
-    if (y + 1 == w->across.y_end || y + 1 >= band_end + w->reach_y) {
-      // At the end of the window all that is left is complete.
-      const int end = y + 1 == w->across.y_end ? w->own_y_end : band_end;
-      for (; next < end; next = min(next + BAND, end)) {
-        scatter_down(w, f, in, out, tables, &sight, skips, held, next, min(next + BAND, end));
+  int next_surface = down->y_begin;
+  int curved_across = 0;
+  for (int y = across->y_begin; y < across->y_end; ++y) {
+    load_light_row(&sight, w, f, in, y);
+    if (y % CELL == 0 || y == across->y_begin) {
+      curved_across = JITTER || any_curved(f, tables, w->x_begin, w->x_end, y, y + 1, 0);
+    }
+    if (curved_across) {
+      load_surface_row(across, f, in, tables->materials, across->x_begin - PADDING, across->x_end + PADDING, y);
+      measure_segments(across, f, 0, across->x_begin, across->x_end, y);
+    }
+    if (w->curved_down) {
+      // Slopes are taken from the next row, too.
+      for (; next_surface < min(y + 2, down->y_end); ++next_surface) {
+        load_surface_row(down, f, in, tables->materials, w->x_begin, w->x_end, next_surface);
       }
+      if (y >= w->y_begin && y < w->y_end) measure_segments(down, f, 1, w->x_begin, w->x_end, y);
+    }
+#if !JITTER
+    scatter_row(w, f, tables, &sight, skips, y);
+    // At the end of the window all that is left is complete.
+    while (next < w->own_y_end) {
+      const int end = min((next / CELL + 1) * CELL, w->own_y_end);
+      if (y + 1 < min(end + w->reach_y, across->y_end)) break;
+      scatter_down(w, f, in, out, tables, &sight, skips, held, next, end);
+      next = end;
     }
 #endif
   }
 #if JITTER
   // Turned taps need all rows.
-  const RowSight any_row = {1, 1, 1};
-  for (int y = w->y_begin; y < w->y_end; ++y) scatter_row(w, f, tables, &sight, any_row, 0, y);
-  sight.last_mixed = sight.last_varied = sight.last_lit = w->y_end;
-  for (; next < w->own_y_end; next += BAND) {
-    scatter_down(w, f, in, out, tables, &sight, 0, held, next, min(next + BAND, w->own_y_end));
+  for (int y = w->y_begin; y < w->y_end; ++y) scatter_row(w, f, tables, &sight, 0, y);
+  sight.last_bad = sight.last_varied = w->y_end;
+  while (next < w->own_y_end) {
+    const int end = min((next / CELL + 1) * CELL, w->own_y_end);
+    scatter_down(w, f, in, out, tables, &sight, 0, held, next, end);
+    next = end;
   }
 #endif
   return sight;
 }
 
-// Whether every cell of a rectangle is flat in both passes.
-static inline int all_flat(const struct FrameParams* f, const Tables* tables, int x_begin, int x_end, int y_begin,
-                           int y_end) {
-  for (int cy = y_begin / CELL; cy * CELL < y_end; ++cy) {
-    for (int cx = x_begin / CELL; cx * CELL < x_end; ++cx) {
-      global const struct CellFootprint* cell = tables->footprints + (size_t)cy * f->cells_x + cx;
-      if (cell->x > 0.0f || cell->y > 0.0f) return 0;
-    }
-  }
-  return 1;
+// Of a power of two of at least so many rows.
+static inline int rows_mask(int rows) {
+  int power = 1;
+  while (power < rows) power *= 2;
+  return power - 1;
 }
 
 // The windows of a tile.
@@ -268,16 +489,17 @@ static inline Windows windows_of(const struct FrameParams* f, const Tables* tabl
 #if JITTER
   const int reach_2d = max(reach_x, farthest_tap(f, tables, w.x_begin, w.x_end, w.y_begin, w.y_end, 1));
   const int margin_px = (int)fmin(ceil(reach_2d * f->widest_turn) + 1.0f, (float)max(f->width, f->height));
-  w.has_depth_terms = 1;
 #else
   const int margin_px = 0;
-  w.has_depth_terms = !all_flat(f, tables, w.x_begin, w.x_end, w.y_begin, w.y_end);
 #endif
+  w.curved_across = JITTER || any_curved(f, tables, w.x_begin, w.x_end, w.y_begin, w.y_end, 0);
+  w.curved_down = JITTER || any_curved(f, tables, x_begin, x_end, y_begin, y_end, 1);
   struct WindowParams p;
   p.x_begin = max(w.x_begin - max(reach_x, margin_px), 0) & ~(CELL - 1);
   p.x_end = (min(w.x_end + max(reach_x, margin_px), f->width) + CELL - 1) & ~(CELL - 1);
   p.y_begin = max(w.y_begin - margin_px, 0);
   p.y_end = min(w.y_end + margin_px, f->height);
+  p.row_mask = rows_mask(p.y_end - p.y_begin);
   p.row_stride = JITTER ? p.x_end - p.x_begin + 2 * PADDING : 0;
   w.across = window_in(p, across_plane, 1, memory);
   p.x_begin = w.x_begin;
@@ -285,9 +507,12 @@ static inline Windows windows_of(const struct FrameParams* f, const Tables* tabl
   // A row more, which slopes are taken from.
   p.y_begin = max(w.y_begin - 1, 0);
   p.y_end = min(w.y_end + 1, f->height);
-  p.row_stride = p.x_end - p.x_begin + 2 * PADDING;
+  p.row_mask = rows_mask(JITTER ? p.y_end - p.y_begin : min(p.y_end - p.y_begin, 2 * reach_y + BAND + 3));
+  // Odd in cache lines, so that the pixels of a column do not share sets of the cache.
+  p.row_stride = (p.x_end - p.x_begin + 2 * PADDING) | 16;
   w.down = window_in(p, down_plane, TERMS, memory + window_bytes(across_plane, 1));
   w.band = (global float*)(memory + window_bytes(across_plane, 1) + window_bytes(down_plane, TERMS));
+  w.choices = (global struct ChoiceParams*)(w.band + 3 * BAND * (size_t)((f->tile_width + CELL - 1) & ~(CELL - 1)));
   return w;
 }
 
@@ -304,8 +529,8 @@ static inline int scatter_tile(const struct FrameParams* f, const Inputs* in, co
   for (int cy = y_begin / CELL; cy * CELL < y_end; ++cy) {
     for (int cx = x_begin / CELL; cx * CELL < x_end; ++cx) {
       global const struct CellParams* cell = cells + (size_t)cy * f->cells_x + cx;
-      scattered += cell->counters[COUNT_SCATTERED];
-      narrow += cell->counters[COUNT_NARROW];
+      scattered += cell->scattered;
+      narrow += cell->narrow;
     }
   }
   if (scattered == 0) {
@@ -314,10 +539,11 @@ static inline int scatter_tile(const struct FrameParams* f, const Inputs* in, co
   }
   const Windows w = windows_of(f, tables, x_begin, x_end, y_begin, y_end, memory, across_plane, down_plane);
   const Sight sight = scatter_rows(&w, f, in, out, tables, skips, held);
-  *bad_pixels += sight.bad;
-  if (skips && sight.last_lit < w.y_begin) return TILE_UNLIT;
-  if (skips && sight.last_varied < w.y_begin) return TILE_UNIFORM;
-  return w.has_depth_terms ? TILE_CURVED : TILE_FLAT;
+  *bad_pixels += sight.bad_pixels;
+  if (skips && sight.last_varied < w.y_begin) {
+    return sight.light[0] == 0.0f && sight.light[1] == 0.0f && sight.light[2] == 0.0f ? TILE_UNLIT : TILE_UNIFORM;
+  }
+  return w.curved_across || w.curved_down ? TILE_CURVED : TILE_FLAT;
 }
 
 kernel void scatter(struct FrameParams f, global const struct MaterialParams* materials,
@@ -326,7 +552,7 @@ kernel void scatter(struct FrameParams f, global const struct MaterialParams* ma
                     global const struct FlatWeight* flat_weights, global const struct RotationParams* rotations,
                     uint seed,                                                                              //
                     global const uchar* surface, global const struct CellParams* cells,                     //
-                    global const struct CellFootprint* footprints,                                          //
+                    global const struct CellPasses* passes,                                                 //
                     global const uchar* light, struct ImageParams light_at,                                 //
                     global const uchar* albedo, struct ImageParams albedo_at,                               //
                     global const uchar* depth, struct ImageParams depth_at,                                 //
@@ -339,7 +565,7 @@ kernel void scatter(struct FrameParams f, global const struct MaterialParams* ma
   const Inputs in = {light, albedo, depth, mask, light_at, albedo_at, depth_at, mask_at, surface};
   const Outputs out = {beauty,    scattered,        result,        beauty_at, scattered_at,
                        result_at, writes_scattered, writes_result, zeroes_bad};
-  const Tables tables = {materials, terms, rungs, offsets, weights, flat_weights, rotations, footprints, seed};
+  const Tables tables = {materials, terms, rungs, offsets, weights, flat_weights, rotations, passes, seed};
   // There are more work-items than workers, as a device may give several to one thread; the first ones do the work.
   global uchar* own_memory = 0;
   int bad = 0;
@@ -348,12 +574,13 @@ kernel void scatter(struct FrameParams f, global const struct MaterialParams* ma
       const int worker = atomic_inc(counters + COUNTER_WORKERS);
       if (worker >= workers) return;
       const size_t band_bytes = 3 * BAND * (size_t)((f.tile_width + CELL - 1) & ~(CELL - 1)) * sizeof(float);
-      own_memory = memory + worker * (window_bytes(across_plane, 1) + window_bytes(down_plane, TERMS) + band_bytes);
+      own_memory = memory + worker * (window_bytes(across_plane, 1) + window_bytes(down_plane, TERMS) + band_bytes +
+                                      across_plane / CELL * sizeof(struct ChoiceParams));
     }
     const int tile = atomic_inc(counters + COUNTER_NEXT_TILE);
     if (tile >= f.tiles_x * f.tiles_y) break;
     kinds[tile] = scatter_tile(&f, &in, &out, &tables, cells, tile, own_memory, across_plane, down_plane,
                                copies && !holds, skips, holds ? held : 0, &bad);
   }
-  if (bad > 0) atomic_add(counters + COUNTER_BAD_PIXELS, bad);
+  if (bad > 0) atomic_add(counters + COUNTER_BAD, bad);
 }

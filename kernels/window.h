@@ -8,11 +8,12 @@
 #error "TILED"
 #endif
 
-// What a pass reads around its pixels. The horizontal pass of a tile needs one row at a time, which is then as far from
-// itself as from the next: row_stride is 0.
+// What a pass reads around its pixels. Row y lies at y & row_mask, so that rows may take the place of others that are
+// no longer read. The horizontal pass of a tile needs one row at a time: row_stride is 0.
 typedef struct {
   int x_begin, x_end;  // px; planes begin PADDING earlier and end PADDING later
   int y_begin, y_end;
+  int row_mask;
   int row_stride;          // elements
   size_t plane;            // elements
   global float* light;     // 3 planes for each image
@@ -30,7 +31,7 @@ static inline size_t window_bytes(size_t plane, int images) {
 
 static inline Window window_in(struct WindowParams p, size_t plane, int images, global uchar* memory) {
   global float* floats = (global float*)memory;
-  Window w = {p.x_begin, p.x_end, p.y_begin, p.y_end, p.row_stride, plane, floats, 0, 0, 0, 0, 0};
+  Window w = {p.x_begin, p.x_end, p.y_begin, p.y_end, p.row_mask, p.row_stride, plane, floats, 0, 0, 0, 0, 0};
   w.segment = floats + 3 * images * plane;
   w.depth = w.segment + plane;
   w.width = w.depth + plane;
@@ -40,5 +41,5 @@ static inline Window window_in(struct WindowParams p, size_t plane, int images, 
 }
 
 static inline size_t pixel_at(const Window* w, int x, int y) {
-  return (size_t)(y - w->y_begin) * w->row_stride + (x - w->x_begin) + PADDING;
+  return (size_t)(y & w->row_mask) * w->row_stride + (x - w->x_begin) + PADDING;
 }

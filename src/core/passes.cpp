@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -97,7 +98,12 @@ Passes::Passes(const Plan::State& plan, const Frame& frame, const BoundImages& i
       memory_(memory),
       queue_(std::move(queue)),
       params_(frame_params(frame, plan.options, memory.sizes)),
-      window_{0, (frame.width + CELL - 1) / CELL * CELL, 0, frame.height, memory.sizes.stride()} {
+      window_{0,
+              (frame.width + CELL - 1) / CELL * CELL,
+              0,
+              frame.height,
+              std::numeric_limits<int>::max(),
+              memory.sizes.stride()} {
   for (const cl_event event : wait_for) last_.emplace_back(event, true);
   const cl::Context context(plan.device.context(), true);
   const bool light_is_scattered = plan.options.lighting == Lighting::raw && plan.options.albedo_mix == 0;
@@ -144,9 +150,9 @@ void Passes::classify() {
                 images_.buffer(ImageName::mask), images_.layout(ImageName::mask),          //
                 memory_.surface, memory_.cells);
   events_.classify.push_back(launch(survey, columns, params_.cells_y, 1));
-  cl::Kernel footprints(plan_.classify_program, "footprints");
-  set_arguments(footprints, params_, cells_per_item, memory_.cells, memory_.footprints);
-  events_.classify.push_back(launch(footprints, columns, params_.cells_y, 1));
+  cl::Kernel choose(plan_.classify_program, "choose_passes");
+  set_arguments(choose, params_, cells_per_item, memory_.cells, memory_.passes, memory_.counters);
+  events_.classify.push_back(launch(choose, columns, params_.cells_y, 1));
   if (!plan_.tiled) prepare();
 }
 
@@ -192,21 +198,21 @@ void Passes::scatter(int step) {
 void Passes::scatter_tiles() {
   cl::Kernel kernel(plan_.program, "scatter");
   const auto flag = [](bool value) { return value ? 1 : 0; };
-  set_arguments(
-      kernel, params_, plan_.materials, plan_.terms, plan_.rungs, plan_.offsets, plan_.weights, plan_.flat_weights,
-      rotations_, plan_.options.seed, memory_.surface, memory_.cells, memory_.footprints,       //
-      images_.buffer(ImageName::light), images_.layout(ImageName::light),                       //
-      images_.buffer(ImageName::albedo), images_.layout(ImageName::albedo),                     //
-      images_.buffer(ImageName::depth), images_.layout(ImageName::depth),                       //
-      images_.buffer(ImageName::mask), images_.layout(ImageName::mask),                         //
-      images_.buffer(ImageName::beauty), images_.layout(ImageName::beauty),                     //
-      images_.buffer(ImageName::scattered), images_.layout(ImageName::scattered),               //
-      flag(images_.has(ImageName::scattered)),                                                  //
-      images_.buffer(ImageName::result), images_.layout(ImageName::result),                     //
-      flag(images_.has(ImageName::result)), flag(plan_.options.bad_pixels == BadPixels::zero),  //
-      flag(copies_), flag(plan_.options.skip_uniform_light), flag(holds_), memory_.held,        //
-      memory_.windows, static_cast<cl_long>(memory_.sizes.across_plane()),                      //
-      static_cast<cl_long>(memory_.sizes.down_plane()), memory_.sizes.workers, memory_.kinds, memory_.counters);
+  set_arguments(kernel, params_, plan_.materials, plan_.terms, plan_.rungs, plan_.offsets, plan_.weights,
+                plan_.flat_weights, rotations_, plan_.options.seed, memory_.surface, memory_.cells, memory_.passes,  //
+                images_.buffer(ImageName::light), images_.layout(ImageName::light),                                  //
+                images_.buffer(ImageName::albedo), images_.layout(ImageName::albedo),                                //
+                images_.buffer(ImageName::depth), images_.layout(ImageName::depth),                                  //
+                images_.buffer(ImageName::mask), images_.layout(ImageName::mask),                                    //
+                images_.buffer(ImageName::beauty), images_.layout(ImageName::beauty),                                //
+                images_.buffer(ImageName::scattered), images_.layout(ImageName::scattered),                          //
+                flag(images_.has(ImageName::scattered)),                                                             //
+                images_.buffer(ImageName::result), images_.layout(ImageName::result),                                //
+                flag(images_.has(ImageName::result)), flag(plan_.options.bad_pixels == BadPixels::zero),             //
+                flag(copies_), flag(plan_.options.skip_uniform_light), flag(holds_), memory_.held,                   //
+                memory_.windows, static_cast<cl_long>(memory_.sizes.across_plane()),                                 //
+                static_cast<cl_long>(memory_.sizes.down_plane()), memory_.sizes.workers, memory_.kinds,
+                memory_.counters);
   // A device may give a thread several work-items in one go.
   constexpr int items_per_worker = 8;
   events_.scatter.push_back(launch(kernel, items_per_worker * memory_.sizes.workers, 1, 1));
@@ -217,7 +223,7 @@ void Passes::scatter_pixels() {
   for (const char* name : {"scatter_x", "scatter_y"}) {
     cl::Kernel kernel(plan_.program, name);
     set_arguments(kernel, params_, window_, plan_.materials, plan_.terms, plan_.rungs, plan_.offsets, plan_.weights,
-                  plan_.flat_weights, rotations_, plan_.options.seed, memory_.footprints, memory_.windows, plane,
+                  plan_.flat_weights, rotations_, plan_.options.seed, memory_.passes, memory_.windows, plane,
                   memory_.between, memory_.segments);
     if (events_.scatter.size() == 1) kernel.setArg(15, memory_.held);
     events_.scatter.push_back(launch(kernel, params_.width, params_.height, 0));
@@ -248,28 +254,23 @@ void Passes::finish() {
   events_.finish.push_back(launch(kernel, runs(), params_.height, plan_.item_is_pixel ? 0 : 1));
 }
 
-int Passes::bad_pixels() const {
-  cl_int counters[RUN_COUNTERS] = {};
-  queue_.enqueueReadBuffer(memory_.counters, CL_TRUE, 0, sizeof(counters), counters, &last_);
-  return counters[COUNTER_BAD_PIXELS];
+std::array<int, RUN_COUNTERS> Passes::counters() const {
+  std::array<cl_int, RUN_COUNTERS> counters{};
+  queue_.enqueueReadBuffer(memory_.counters, CL_TRUE, 0, sizeof(counters), counters.data(), &last_);
+  return counters;
 }
+
+int Passes::bad_pixels() const { return counters()[COUNTER_BAD]; }
 
 void Passes::add_to(Stats& stats) const {
   const RunSizes& sizes = memory_.sizes;
-  std::vector<params::CellParams> cells(static_cast<std::size_t>(sizes.cells_x()) * sizes.cells_y());
-  std::vector<params::CellFootprint> footprints(cells.size());
-  queue_.enqueueReadBuffer(memory_.cells, CL_TRUE, 0, cells.size() * sizeof(cells[0]), cells.data(), &last_);
-  queue_.enqueueReadBuffer(memory_.footprints, CL_TRUE, 0, footprints.size() * sizeof(footprints[0]),
-                           footprints.data());
-  for (std::size_t i = 0; i < cells.size(); ++i) {
-    const int* counters = cells[i].counters;
-    stats.pixels_scattered += counters[COUNT_SCATTERED];
-    stats.pixels_narrow += counters[COUNT_NARROW];
-    stats.pixels_without_material += counters[COUNT_WITHOUT_MATERIAL];
-    if (footprints[i].x < 0 && footprints[i].y < 0) stats.pixels_flat += counters[COUNT_SCATTERED];
-  }
-  stats.pixels = stats.pixels_scattered + stats.pixels_narrow + stats.pixels_without_material;
-  stats.pixels_bad = bad_pixels();
+  const auto counted = counters();
+  stats.pixels = static_cast<std::int64_t>(sizes.width) * sizes.height;
+  stats.pixels_scattered = counted[COUNTER_SCATTERED];
+  stats.pixels_narrow = counted[COUNTER_NARROW];
+  stats.pixels_without_material = stats.pixels - stats.pixels_scattered - stats.pixels_narrow;
+  stats.pixels_flat = counted[COUNTER_FLAT];
+  stats.pixels_bad = counted[COUNTER_BAD];
   if (!plan_.tiled) return;
   TileMap& tiles = stats.tiles;
   tiles = {sizes.tile_width, sizes.tile_height, sizes.tiles_x(), sizes.tiles_y(), {}};

@@ -1,6 +1,7 @@
 // The steps over one frame.
 #pragma once
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -49,6 +50,7 @@ class Passes {
   void scatter_tiles();
   void scatter_pixels();
   void scatter_exactly(int first_row, int rows);
+  std::array<int, RUN_COUNTERS> counters() const;
   int runs() const;  ///< work-items per row of a frame-wide kernel
 
   const Plan::State& plan_;

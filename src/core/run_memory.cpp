@@ -1,6 +1,7 @@
 #include "core/run_memory.hpp"
 
 #include <algorithm>
+#include <bit>
 
 namespace dermis {
 
@@ -33,7 +34,7 @@ std::size_t RunSizes::across_plane() const {
   // Taps that are turned need the surroundings of the surroundings.
   const std::size_t reach = static_cast<std::size_t>(farthest_px) * (turns_taps ? 4 : 1) + (turns_taps ? 4 : 0);
   const std::size_t columns = std::min<std::size_t>(stride(), tile_width + 2 * (reach + CELL) + 2 * PADDING);
-  const std::size_t rows = turns_taps ? std::min<std::size_t>(height, tile_height + 2 * reach) : 1;
+  const std::size_t rows = turns_taps ? std::bit_ceil(std::min<std::size_t>(height, tile_height + 2 * reach)) : 1;
   return static_cast<std::size_t>(round_up(static_cast<int>(columns), alignment)) * rows;
 }
 
@@ -41,16 +42,19 @@ std::size_t RunSizes::down_plane() const {
   if (workers == 0) return 0;
   const std::size_t reach = static_cast<std::size_t>(farthest_px) * (turns_taps ? 2 : 1) + 2;
   const std::size_t turned = turns_taps ? reach + CELL : 0;
-  const std::size_t columns = std::min<std::size_t>(stride(), round_up(tile_width, CELL) + 2 * turned + 2 * PADDING);
-  return static_cast<std::size_t>(round_up(static_cast<int>(columns), alignment)) *
-         std::min<std::size_t>(height, tile_height + 2 * reach);
+  const std::size_t columns = std::min<std::size_t>(stride(), round_up(tile_width, CELL) + 2 * turned + 2 * PADDING) + CELL;
+  // Without turned taps a row is not needed any more when the vertical pass is beyond it.
+  constexpr std::size_t band_rows = CELL + 3;
+  const std::size_t rows = std::min<std::size_t>(height, turns_taps ? tile_height + 2 * reach : 2 * reach + band_rows);
+  return static_cast<std::size_t>(round_up(static_cast<int>(columns), alignment)) * std::bit_ceil(rows);
 }
 
 std::size_t RunSizes::windows_bytes() const {
   if (workers == 0) return window_bytes(across_plane(), 1, has_pixel_width);
   const std::size_t band_bytes = 3 * 16 * static_cast<std::size_t>(round_up(tile_width, CELL)) * sizeof(float);
-  return workers * (window_bytes(across_plane(), 1, has_pixel_width) +
-                    window_bytes(down_plane(), terms, has_pixel_width) + band_bytes);
+  return workers *
+         (window_bytes(across_plane(), 1, has_pixel_width) + window_bytes(down_plane(), terms, has_pixel_width) +
+          band_bytes + across_plane() / CELL * sizeof(params::ChoiceParams));
 }
 
 std::size_t RunSizes::bytes(bool holds) const {
@@ -58,7 +62,7 @@ std::size_t RunSizes::bytes(bool holds) const {
   const std::size_t tiles = static_cast<std::size_t>(tiles_x()) * tiles_y();
   const std::size_t plane_bytes = frame_plane() * sizeof(float);
   std::size_t sum =
-      frame_plane() + cells * (sizeof(params::CellParams) + sizeof(params::CellFootprint)) + windows_bytes() + tiles;
+      frame_plane() + cells * (sizeof(params::CellParams) + sizeof(params::CellPasses)) + windows_bytes() + tiles;
   if (workers == 0) sum += (exact ? 3 : 3 * static_cast<std::size_t>(terms) + 1) * plane_bytes;
   if (holds || workers == 0) sum += 3 * plane_bytes;
   return sum;
@@ -70,7 +74,7 @@ RunMemory::RunMemory(const cl::Context& context, const RunSizes& wanted) : sizes
   const std::size_t plane_bytes = sizes.frame_plane() * sizeof(float);
   surface = allocate(sizes.frame_plane());
   cells = allocate(cell_count * sizeof(params::CellParams));
-  footprints = allocate(cell_count * sizeof(params::CellFootprint));
+  passes = allocate(cell_count * sizeof(params::CellPasses));
   windows = allocate(sizes.windows_bytes());
   kinds = allocate(static_cast<std::size_t>(sizes.tiles_x()) * sizes.tiles_y());
   counters = allocate(RUN_COUNTERS * sizeof(cl_int));
