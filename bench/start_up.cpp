@@ -9,8 +9,10 @@
 #include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "dermis/error.hpp"
+#include "dermis/plan.hpp"
 #include "opponents.hpp"
 #include "peak_memory.hpp"
 #include "stopwatch.hpp"
@@ -82,10 +84,13 @@ void run_start_up_child(const std::string& device_name) {
   const Case what;
   const Scene scene = make_scene(what.scene);
   const Device device = Device::open(device_name);
-  std::unique_ptr<Opponent> first, second;
-  const double plan_ms = time_ms([&] { first = make_dermis(what, scene, device); });
-  const double first_run_ms = time_ms([&] { first->run(); });
-  const double second_plan_ms = time_ms([&] { second = make_dermis(what, scene, device); });
+  const auto make_plan = [&] { return Plan(device, {{.profile = skin()}}, {.depth = true}, {.taps = what.design}); };
+  std::optional<Plan> first, second;
+  const double plan_ms = time_ms([&] { first.emplace(make_plan()); });
+  // It has a plan of its own, equal to the first: images are not to be made while the clock runs.
+  const std::unique_ptr<Opponent> filter = make_dermis(what, scene, device);
+  const double first_run_ms = time_ms([&] { filter->run(); });
+  const double second_plan_ms = time_ms([&] { second.emplace(make_plan()); });
   fmt::print("{}\n", nlohmann::json{{"plan_ms", plan_ms},
                                     {"first_run_ms", first_run_ms},
                                     {"second_plan_ms", second_plan_ms},

@@ -15,15 +15,29 @@
 namespace dermis::program {
 namespace {
 
+constexpr std::string_view automatic = "auto";
 constexpr int most_taps = 2047;
 
 bool is_number_of_taps(std::int64_t taps) { return taps >= 3 && taps <= most_taps && taps % 2 == 1; }
 
-CLI::Validator taps_or_dense() {
-  return {[](const std::string& text) {
+CLI::Validator taps_or_dense(bool or_auto) {
+  return {[or_auto](const std::string& text) {
             const auto taps = parse_whole(text);
-            const bool good = text == "dense" || (taps && is_number_of_taps(*taps));
-            return good ? std::string{} : refusal(text, fmt::format("an odd number from 3 to {} or dense", most_taps));
+            const bool good = text == "dense" || (or_auto && text == automatic) || (taps && is_number_of_taps(*taps));
+            return good ? std::string{}
+                        : refusal(text, fmt::format("an odd number from 3 to {} or dense{}", most_taps,
+                                                    or_auto ? " or auto" : ""));
+          },
+          ""};
+}
+
+CLI::Validator rank_of_any_model(bool or_auto) {
+  return {[or_auto](const std::string& text) {
+            const auto rank = parse_whole(text);
+            const bool good = (or_auto && text == automatic) || (rank && *rank >= 1 && *rank <= 6);
+            return good ? std::string{}
+                        : refusal(text, fmt::format("a whole number from 1 to 6, as the model allows{}",
+                                                    or_auto ? ", or auto" : ""));
           },
           ""};
 }
@@ -58,17 +72,16 @@ std::string_view name_in(const std::array<Named<Value>, count>& names, Value val
   return {};
 }
 
-/// True if a rank above 1 can be meant.
-bool has_ranks(Model model) { return model == Model::svd || model == Model::gaussians || model == Model::optimised; }
-
 }  // namespace
 
 std::string_view name_of(Model model) { return name_in(models, model); }
 std::string_view name_of(Placement placement) { return name_in(placements, placement); }
 
 std::string command_text(const TapsDesign& design) {
-  std::string text = fmt::format(" --model {} --rank {} --taps {} --placement {}", name_of(design.model), design.rank,
-                                 design.count, name_of(design.placement));
+  std::string text = fmt::format(" --model {}", name_of(design.model));
+  if (design.rank > 0) text += fmt::format(" --rank {}", design.rank);
+  if (design.tolerance == 0) text += fmt::format(" --taps {}", design.count);
+  text += fmt::format(" --placement {}", name_of(design.placement));
   if (design.model == Model::guided) text += fmt::format(" --guide {}", design.guide);
   if (design.non_negative) text += " --non-negative";
   return text;
@@ -79,22 +92,25 @@ void add_design_arguments(CLI::App& app, DesignArguments& arguments) {
                  "the products of one-dimensional functions that stand for the profile: pre-integrated, artist or "
                  "guided (Jimenez et al. 2015), svd, gaussians, or optimised for natural images")
       ->check(one_of({"pre-integrated", "artist", "guided", "svd", "gaussians", "optimised"}))
-      ->capture_default_str();
+      ->default_str(std::string(name_of(arguments.defaults.model)));
+  const bool or_auto = arguments.may_be_automatic;
   app.add_option("--rank", arguments.rank,
-                 "how many products: 1..6 for svd and gaussians, 1..3 for optimised, 1 for the others")
-      ->check(whole_number([](std::int64_t rank) { return rank >= 1 && rank <= 6; },
-                           "a whole number from 1 to 6, as the model allows"))
-      ->default_str(std::to_string(arguments.defaults.rank));
-  app.add_option("--taps", arguments.taps, "taps per pass, odd; dense: one on every pixel")
-      ->check(taps_or_dense())
-      ->type_name("N|dense")
-      ->capture_default_str();
+                 fmt::format("how many products: 1..6 for svd and gaussians, 1..3 for optimised, 1 for the others{}",
+                             or_auto ? "; auto: as few as are good enough" : ""))
+      ->check(rank_of_any_model(or_auto))
+      ->type_name(or_auto ? "N|auto" : "N")
+      ->default_str(or_auto ? std::string(automatic) : std::to_string(arguments.defaults.rank));
+  app.add_option("--taps", arguments.taps,
+                 fmt::format("taps per pass, odd; dense: one on every pixel{}",
+                             or_auto ? "; auto: for each width of kernel as few as are good enough" : ""))
+      ->check(taps_or_dense(or_auto))
+      ->type_name(or_auto ? "N|dense|auto" : "N|dense")
+      ->default_str(or_auto ? std::string(automatic) : std::to_string(arguments.defaults.count));
   app.add_option("--placement", arguments.placement,
                  "where taps lie: uniform, importance (the same light each), quadratic or optimised (up to 65 taps; "
-                 "more lie as "
-                 "by importance)")
+                 "more lie as by importance)")
       ->check(one_of({"uniform", "importance", "quadratic", "optimised"}))
-      ->capture_default_str();
+      ->default_str(std::string(name_of(arguments.defaults.placement)));
   app.add_option(
          "--guide", arguments.guide,
          fmt::format("--model guided: from 0, sharper, to 4, smoother; {} if not given", arguments.defaults.guide))
@@ -103,23 +119,47 @@ void add_design_arguments(CLI::App& app, DesignArguments& arguments) {
                "--model optimised, --rank 2 or 3: keep the approximated profile above zero, for a little error");
 }
 
-TapsDesign design_of(const DesignArguments& arguments) {
-  const Model model = value_of(models, arguments.model);
-  TapsDesign design{.model = model,
-                    .rank = arguments.rank.value_or(has_ranks(model) ? arguments.defaults.rank : 1),
-                    .count = most_taps,
-                    .placement = value_of(placements, arguments.placement),
-                    .non_negative = arguments.non_negative,
-                    .guide = arguments.defaults.guide};
-  if (arguments.taps != "dense") design.count = static_cast<int>(*parse_whole(arguments.taps));
+std::string first_given(const DesignArguments& arguments) {
+  if (arguments.taps) return "--taps " + *arguments.taps;
+  if (arguments.rank) return "--rank " + *arguments.rank;
+  if (arguments.model) return "--model " + *arguments.model;
+  if (arguments.placement) return "--placement " + *arguments.placement;
+  if (arguments.guide) return fmt::format("--guide {}", *arguments.guide);
+  return arguments.non_negative ? "--non-negative" : "";
+}
+
+bool asks_for_automatic(const DesignArguments& arguments) {
+  return arguments.rank == automatic || arguments.taps == automatic;
+}
+
+TapsDesign design_of(const DesignArguments& arguments, double tolerance) {
+  // Beyond so many, the kernel is wide and the fit slow; `chosen_designs` takes more where they are needed.
+  constexpr int most_automatic_taps = 33;
+  TapsDesign design = arguments.defaults;
+  design.tolerance = tolerance;
+  if (arguments.model) design.model = value_of(models, *arguments.model);
+  if (arguments.placement) design.placement = value_of(placements, *arguments.placement);
+  if (highest_rank(design.model) == 1) design.rank = 1;
+  if (tolerance > 0) {
+    design.rank = 0;
+    design.count = most_automatic_taps;
+  }
+  if (arguments.rank && arguments.rank != automatic) design.rank = static_cast<int>(*parse_whole(*arguments.rank));
+  if (arguments.taps == "dense") {
+    design.count = most_taps;
+  } else if (arguments.taps && arguments.taps != automatic) {
+    design.count = static_cast<int>(*parse_whole(*arguments.taps));
+  }
   if (arguments.guide) {
     if (design.model != Model::guided)
-      throw Error(ErrorCode::usage, "--guide", fmt::format("{} for --model {}", *arguments.guide, arguments.model),
-                  "--model guided with it");
+      throw Error(ErrorCode::usage, "--guide",
+                  fmt::format("{} for --model {}", *arguments.guide, name_of(design.model)), "--model guided with it");
     design.guide = *arguments.guide;
   }
+  design.non_negative = arguments.non_negative;
   if (design.non_negative && (design.model != Model::optimised || design.rank == 1))
-    throw Error(ErrorCode::usage, "--non-negative", fmt::format("--model {}, --rank {}", arguments.model, design.rank),
+    throw Error(ErrorCode::usage, "--non-negative",
+                fmt::format("--model {}, --rank {}", name_of(design.model), design.rank),
                 "--model optimised and --rank 2 or 3 with it");
   return design;
 }

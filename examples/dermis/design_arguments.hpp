@@ -2,7 +2,6 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
-#include <array>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -19,26 +18,30 @@ std::string_view name_of(Placement placement);
 /// What was not given is as in `defaults`; but the rank is 1 if the model knows no other.
 struct DesignArguments {
   TapsDesign defaults = {};
-  std::string model{name_of(defaults.model)};
-  std::optional<int> rank = {};
-  std::string taps = std::to_string(defaults.count);  ///< or "dense"
-  std::string placement{name_of(defaults.placement)};
+  bool may_be_automatic = false;  ///< rank and taps may be "auto"
+  std::optional<std::string> model = {};
+  std::optional<std::string> rank = {};
+  std::optional<std::string> taps = {};  ///< a number or "dense"
+  std::optional<std::string> placement = {};
   std::optional<double> guide = {};
-  bool non_negative = defaults.non_negative;
+  bool non_negative = false;
 };
 
-/// The names of these options.
-inline constexpr std::array design_options = {"--model",     "--rank",  "--taps",
-                                              "--placement", "--guide", "--non-negative"};
+/// The first of these options that was given, with its value; empty if none was.
+std::string first_given(const DesignArguments& arguments);
 
-/// The options that ask for a design, with a space before each.
+/// True if "auto" was given.
+bool asks_for_automatic(const DesignArguments& arguments);
+
+/// The options that ask for a design, with a space before each; rank and taps only if there is no tolerance.
 std::string command_text(const TapsDesign& design);
 
 /// Adds --model, --rank, --taps, --placement, --guide and --non-negative.
 void add_design_arguments(CLI::App& app, DesignArguments& arguments);
 
-/// Throws Error(usage) for an option that the model would ignore.
-TapsDesign design_of(const DesignArguments& arguments);
+/// The design; with a tolerance above 0 rank and taps are left to it, but for a rank that was given. Throws
+/// Error(usage) for an option that the model would ignore.
+TapsDesign design_of(const DesignArguments& arguments, double tolerance = 0);
 
 /// A library's error about one of these arguments, `pixel_mm` or `tolerance`, with the name of the option in its place;
 /// any other error as it is.

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "bad_pixels_argument.hpp"
 #include "chosen_designs.hpp"
 #include "commands.hpp"
 #include "dermis/error.hpp"
@@ -26,6 +27,7 @@
 #include "stats_report.hpp"
 #include "stopwatch.hpp"
 #include "surface_pixels.hpp"
+#include "tile_map.hpp"
 
 namespace dermis::program {
 namespace {
@@ -49,6 +51,7 @@ void check_outputs_differ(const FilterArguments& arguments) {
     taken.emplace_back(argument, path);
   };
   check("--preview", arguments.preview);
+  check("--tile-map", arguments.tile_map);
   check("--stats-json", arguments.stats_json);
 }
 
@@ -56,6 +59,7 @@ void check_outputs(const FilterArguments& arguments) {
   check_outputs_differ(arguments);
   check_writable("--output", arguments.output);
   if (!arguments.preview.empty()) check_writable("--preview", arguments.preview);
+  if (!arguments.tile_map.empty()) check_writable("--tile-map", arguments.tile_map);
   if (!arguments.stats_json.empty() && arguments.stats_json != "-")
     check_writable("--stats-json", arguments.stats_json);
 }
@@ -101,19 +105,45 @@ std::vector<MaterialReport> report_materials(const std::vector<NamedProfile>& pr
                        .pixels = pixels.pixels,
                        .pixel_mm = pixel_mm_of(pixels, camera, mm_per_unit),
                        .design = {},
+                       .taps = {},
                        .predicted_rel_l2 = {}});
   }
   return reports;
 }
 
-/// The designs that the tolerance asks for, or else the exact method.
-void follow_tolerance(double tolerance, std::vector<NamedProfile>& profiles, StatsReport& report) {
-  report.tolerance = tolerance;
-  const std::vector<std::string> without = choose_designs(profiles, report.materials, tolerance);
+void describe_quality(const FilterArguments& arguments, StatsReport& report) {
+  const bool is_reference = arguments.quality.quality == reference_quality;
+  if (!is_reference && !is_automatic(arguments)) return;
+  if (!is_reference) report.tolerance = tolerance_of(arguments.quality);
+  if (!arguments.quality.tolerance)
+    report.quality = arguments.quality.quality.empty() ? default_quality : arguments.quality.quality;
+}
+
+/// Gives the materials the designs that the tolerance asks for. If there are none, a tolerance that was given takes the
+/// exact method, and a quality the best taps.
+void follow_tolerance(const FilterArguments& arguments, std::vector<NamedProfile>& profiles, StatsReport& report) {
+  std::vector<std::string> without;
+  try {
+    without = choose_designs(profiles, report.materials, report.options.taps);
+  } catch (const Error& error) {
+    throw named_as_option(error);
+  }
   if (without.empty()) return;
-  report.options.method = Method::exact;
-  fmt::print(stderr, "dermis: note: --tolerance {}: no taps are that good for {}; the method is exact\n", tolerance,
-             fmt::join(without, ", "));
+  const bool is_exact = arguments.quality.tolerance.has_value();
+  if (is_exact) report.options.method = Method::exact;
+  fmt::print(stderr, "dermis: note:{}: no taps are that good for {}; {}\n", command_text(arguments.quality),
+             fmt::join(without, ", "), is_exact ? "the method is exact" : "they have the best");
+}
+
+/// Before the work that it needs.
+void check_tiles(const FilterArguments& arguments, const StatsReport& report) {
+  if (arguments.tile_map.empty()) return;
+  if (report.options.method == Method::exact)
+    throw Error(ErrorCode::usage, "--tile-map", arguments.tile_map + " with the exact method",
+                "a tolerance that taps can meet, for the exact method has no tiles");
+  if (report.device.type == "GPU")
+    throw Error(ErrorCode::usage, "--tile-map", arguments.tile_map + " on a GPU",
+                "a device that works tile by tile, as a CPU");
 }
 
 Plan make_plan(const Device& device, const std::vector<NamedProfile>& profiles, const Frame& frame,
@@ -128,33 +158,44 @@ Plan make_plan(const Device& device, const std::vector<NamedProfile>& profiles, 
 /// The progress bar goes before anything else is printed.
 Stats run_plan(const Plan& plan, const Frame& frame) {
   ProgressBar bar;
-  return plan.run(frame, [&](double share) {
-    bar.update(share);
-    return true;
-  });
-}
-
-void warn_of_bad_pixels(const Stats& stats) {
-  if (stats.pixels_bad > 0)
-    fmt::print(stderr, "dermis: warning: {} pixels have light or albedo that is not finite; they stay as they are\n",
-               stats.pixels_bad);
+  try {
+    return plan.run(frame, [&](double share) {
+      bar.update(share);
+      return true;
+    });
+  } catch (const Error& error) {
+    throw bad_pixels_named_as_option(error);
+  }
 }
 
 void write_preview(const std::string& path, const exr::Picture& picture, const exr::Roles& roles) {
   write_srgb_png(path, picture.width(), picture.height(), exr::load(picture, roles, Role::beauty));
 }
 
-/// The result, and the preview beside it: neither takes its place before both are written.
-void write_pictures(const FilterArguments& arguments, exr::Picture& picture, const exr::Roles& roles) {
+/// What is read before anything is computed. The report takes the camera, the roles and the materials from it.
+struct Input {
+  exr::Picture picture;
+  LoadedFrame loaded;
+};
+
+/// The result, and what is to be seen beside it: none takes its place before all are written.
+void write_pictures(const FilterArguments& arguments, Input& input, const StatsReport& report) {
+  exr::Picture& picture = input.picture;
   picture.set_attribute("dermis:version", DERMIS_VERSION);
   picture.set_attribute("dermis:command", command_text(arguments));
   std::optional<TemporaryFile> preview;
   if (!arguments.preview.empty()) {
     preview.emplace("--preview", arguments.preview);
-    write_preview(preview->path().string(), picture, roles);
+    write_preview(preview->path().string(), picture, report.roles);
+  }
+  std::optional<TemporaryFile> tile_map;
+  if (!arguments.tile_map.empty()) {
+    tile_map.emplace("--tile-map", arguments.tile_map);
+    write_tile_map_png(tile_map->path(), picture.width(), picture.height(), report.stats.tiles, input.loaded.light);
   }
   picture.write(arguments.output, arguments.compression);
   if (preview) preview->commit();
+  if (tile_map) tile_map->commit();
 }
 
 void print_stats(const FilterArguments& arguments, const std::vector<NamedProfile>& profiles, StatsReport& report) {
@@ -166,12 +207,6 @@ void print_stats(const FilterArguments& arguments, const std::vector<NamedProfil
   else if (!arguments.stats_json.empty())
     write_text("--stats-json", arguments.stats_json, json_text_of(report));
 }
-
-/// What is read before anything is computed. The report takes the camera, the roles and the materials from it.
-struct Input {
-  exr::Picture picture;
-  LoadedFrame loaded;
-};
 
 Input read_input(const FilterArguments& arguments, const std::vector<NamedProfile>& profiles, StatsReport& report) {
   Input input{exr::Picture::read(arguments.picture.path), {}};
@@ -211,6 +246,7 @@ int run_filter(const FilterArguments& arguments) {
   Stopwatch step;
   StatsReport report;
   report.options = options_of(arguments);
+  describe_quality(arguments, report);
   std::vector<NamedProfile> profiles = parse_profiles(arguments.materials);
   check_outputs(arguments);
 
@@ -219,18 +255,20 @@ int run_filter(const FilterArguments& arguments) {
   report.times.read_ms = step.lap_ms();
 
   const Device device = Device::open(arguments.device, arguments.threads);
-  if (arguments.tolerance) follow_tolerance(*arguments.tolerance, profiles, report);
-  const Plan plan = make_plan(device, profiles, frame, report.options);
   report.device = device.info();
+  if (is_automatic(arguments)) follow_tolerance(arguments, profiles, report);
+  check_tiles(arguments, report);
+  const Plan plan = make_plan(device, profiles, frame, report.options);
   report.times.plan_ms = step.lap_ms();
 
   report.stats = run_plan(plan, frame);
-  warn_of_bad_pixels(report.stats);
+  warn_of_bad_pixels(report.stats, report.options.bad_pixels);
   report.times.run_ms = step.lap_ms();
 
-  write_pictures(arguments, input.picture, report.roles);
+  write_pictures(arguments, input, report);
   report.times.write_ms = step.lap_ms();
   report.times.total_ms = whole.lap_ms();
+  if (!arguments.tile_map.empty()) fmt::print("{}", legend_of(report.stats.tiles));
   print_stats(arguments, profiles, report);
   return 0;
 }

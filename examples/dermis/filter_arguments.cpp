@@ -5,9 +5,11 @@
 #include <cstdint>
 #include <limits>
 
+#include "bad_pixels_argument.hpp"
 #include "dermis/error.hpp"
 #include "number_argument.hpp"
 #include "profile_argument.hpp"
+#include "quality_arguments.hpp"
 #include "word_argument.hpp"
 
 namespace dermis::program {
@@ -17,17 +19,9 @@ void add_method_arguments(CLI::App& app, FilterArguments& arguments) {
   Options& options = arguments.options;
   app.add_option("--method", arguments.method, "separable, or exact: the slow integral over the surface")
       ->check(one_of({"separable", "exact"}))
-      ->capture_default_str();
+      ->default_str("separable");
+  add_quality_arguments(app, arguments.quality);
   add_design_arguments(app, arguments.design);
-  auto* tolerance = app.add_option(
-      "--tolerance", arguments.tolerance,
-      "instead of a design: for each material the cheapest taps whose predicted error, relative L2 on natural images, "
-      "is at most that at the material's median depth; the exact method for all if there are none");
-  tolerance
-      ->check(real_number([](double share) { return share > 0 && share < 1; },
-                          "a share of the light between 0 and 1, as 0.01"))
-      ->type_name("REL");
-  for (const char* const option : design_options) tolerance->excludes(app.get_option(option));
   app.add_option("--jitter", options.jitter, "share of the kernel radius within which taps are rotated per pixel")
       ->check(number_0_to_1())
       ->capture_default_str();
@@ -65,9 +59,37 @@ void add_output_arguments(CLI::App& app, FilterArguments& arguments) {
   app.add_option("--preview", arguments.preview, "also write the filtered beauty as sRGB")
       ->check(file_name_ending({".png"}))
       ->type_name("FILE.png");
+  app.add_option("--tile-map", arguments.tile_map,
+                 "also draw what became of each tile, over the dimmed light, and print what the colours mean")
+      ->check(file_name_ending({".png"}))
+      ->type_name("FILE.png");
   app.add_flag("--stats", arguments.stats, "print times, and what was computed and skipped");
   app.add_option("--stats-json", arguments.stats_json, "write the same as JSON; - is standard output")
       ->type_name("FILE");
+}
+
+/// Throws Error(usage) for options that say different things of how good the result is to be.
+void check_quality(const FilterArguments& arguments) {
+  const QualityArguments& quality = arguments.quality;
+  const std::string design = first_given(arguments.design);
+  const auto refuse = [](const char* argument, const auto& value, const std::string& beside, const char* wanted) {
+    throw Error(ErrorCode::usage, argument, fmt::format("{} with {}", value, beside), wanted);
+  };
+  if (!quality.quality.empty() && quality.tolerance)
+    refuse("--quality", quality.quality, fmt::format("--tolerance {}", *quality.tolerance), "one of the two");
+  const bool is_reference = quality.quality == reference_quality;
+  if (is_reference && arguments.method == "separable")
+    refuse("--quality", quality.quality, "--method separable", "--method exact, or another quality");
+  if (is_reference && !design.empty())
+    refuse("--quality", quality.quality, design, "no taps to be asked for, as it is exact");
+  if (arguments.method == "exact" && quality.tolerance)
+    refuse("--tolerance", *quality.tolerance, "--method exact", "--method separable with it");
+  if (arguments.method == "exact" && quality.given() && !is_reference)
+    refuse("--quality", quality.quality, "--method exact", "reference, or --method separable with it");
+  const bool has_count = arguments.design.taps && arguments.design.taps != "auto";
+  if (has_count && (quality.given() || asks_for_automatic(arguments.design)))
+    refuse("--taps", *arguments.design.taps,
+           quality.given() ? command_text(quality).substr(1) : std::string("--rank auto"), "auto with it");
 }
 
 }  // namespace
@@ -77,7 +99,17 @@ void add_filter_arguments(CLI::App& app, FilterArguments& arguments) {
   add_output_arguments(app, arguments);
   add_material_arguments(app, arguments.materials);
   add_method_arguments(app, arguments);
+  add_bad_pixels_argument(app, arguments.bad_pixels);
   add_device_arguments(app, arguments);
+}
+
+bool is_exact(const FilterArguments& arguments) {
+  return arguments.method == "exact" || arguments.quality.quality == reference_quality;
+}
+
+bool is_automatic(const FilterArguments& arguments) {
+  return !is_exact(arguments) &&
+         (arguments.quality.given() || asks_for_automatic(arguments.design) || first_given(arguments.design).empty());
 }
 
 Options options_of(const FilterArguments& arguments) {
@@ -89,12 +121,16 @@ Options options_of(const FilterArguments& arguments) {
                 "ID=PROFILE for the materials that scatter, or --profile PROFILE for every pixel");
   if (arguments.stats && arguments.stats_json == "-")
     throw Error(ErrorCode::usage, "--stats-json", "- together with --stats", "only one of them on standard output");
-  if (arguments.tolerance && arguments.method == "exact")
-    throw Error(ErrorCode::usage, "--tolerance", fmt::format("{} with --method exact", *arguments.tolerance),
-                "--method separable with it");
+  if (!arguments.tile_map.empty() && arguments.stats_json == "-")
+    throw Error(ErrorCode::usage, "--stats-json", "- together with --tile-map", "only one of them on standard output");
+  check_quality(arguments);
   Options options = arguments.options;
-  options.taps = design_of(arguments.design);
-  options.method = arguments.method == "exact" ? Method::exact : Method::separable;
+  options.taps = design_of(arguments.design, is_automatic(arguments) ? tolerance_of(arguments.quality) : 0);
+  options.method = is_exact(arguments) ? Method::exact : Method::separable;
+  if (options.method == Method::exact && !arguments.tile_map.empty())
+    throw Error(ErrorCode::usage, "--tile-map", arguments.tile_map + " with the exact method",
+                "the separable method with it, for the exact one has no tiles");
+  options.bad_pixels = bad_pixels_of(arguments.bad_pixels);
   options.lighting = arguments.lighting == "lit" ? Lighting::lit : Lighting::raw;
   return options;
 }
@@ -109,17 +145,17 @@ std::string command_text(const FilterArguments& arguments) {
   }
   if (!arguments.materials.profile.empty()) add("--profile", without_folders(arguments.materials.profile));
   if (picture.mm_per_unit) add("--mm-per-unit", *picture.mm_per_unit);
-  add("--method", arguments.method);
-  if (arguments.method == "separable") {
-    if (arguments.tolerance)
-      add("--tolerance", *arguments.tolerance);
-    else
-      text += command_text(design_of(arguments.design));
+  add("--method", is_exact(arguments) ? "exact" : "separable");
+  if (!is_exact(arguments)) {
+    if (is_automatic(arguments)) text += command_text(arguments.quality);
+    if (!is_automatic(arguments) || !first_given(arguments.design).empty())
+      text += command_text(design_of(arguments.design, is_automatic(arguments) ? tolerance_of(arguments.quality) : 0));
     add("--jitter", arguments.options.jitter);
     add("--seed", arguments.options.seed);
   }
   add("--lighting", arguments.lighting);
   add("--albedo-mix", arguments.options.albedo_mix);
+  add("--bad-pixels", arguments.bad_pixels);
   if (picture.camera.fov_deg) add("--fov", *picture.camera.fov_deg);
   if (picture.camera.focal_px) add("--focal-px", *picture.camera.focal_px);
   if (picture.camera.orthographic_px_per_unit) add("--px-per-unit", *picture.camera.orthographic_px_per_unit);

@@ -2,13 +2,13 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
-#include <optional>
 #include <string>
 
 #include "dermis/plan.hpp"
 #include "design_arguments.hpp"
 #include "material_arguments.hpp"
 #include "picture_arguments.hpp"
+#include "quality_arguments.hpp"
 
 namespace dermis::program {
 
@@ -18,20 +18,28 @@ struct FilterArguments {
   std::string output;
   std::string compression;
   std::string preview;
+  std::string tile_map;
   std::string stats_json;
   bool stats = false;
   std::string device;
   int threads = 0;
-  std::string method = "separable";
-  DesignArguments design{.defaults = Options{}.taps};
-  std::optional<double> tolerance;  ///< in place of the design
+  std::string method;  ///< empty: what the quality asks for
+  QualityArguments quality;
+  DesignArguments design{.defaults = Options{}.taps, .may_be_automatic = true};
+  std::string bad_pixels = "keep";
   std::string lighting = "raw";
-  Options options;  ///< but for the method, the taps and the lighting
+  Options options;  ///< but for what stands above
 };
 
 void add_filter_arguments(CLI::App& app, FilterArguments& arguments);
 
-/// The options of the plan. Throws Error(usage) for what the command line needs and lacks.
+/// True if the method is exact, by its name or by the quality.
+bool is_exact(const FilterArguments& arguments);
+
+/// True if a tolerance decides about taps: unless the method is exact or a design was asked for.
+bool is_automatic(const FilterArguments& arguments);
+
+/// The options of the plan. Throws Error(usage) for what the command line needs and lacks, and for what contradicts.
 Options options_of(const FilterArguments& arguments);
 
 /// What was asked for, as a command without the names of pictures and folders: for the record in the result.

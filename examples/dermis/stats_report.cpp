@@ -9,6 +9,7 @@
 #include "design_arguments.hpp"
 #include "json_text.hpp"
 #include "role_text.hpp"
+#include "tile_map.hpp"
 
 namespace dermis::program {
 namespace {
@@ -35,7 +36,8 @@ json design_of(const MaterialReport& material) {
   const TapsDesign& design = *material.design;
   return {{"model", program::name_of(design.model)},
           {"rank", design.rank},
-          {"taps", design.count},
+          {"taps", material.taps ? json(*material.taps) : json(nullptr)},
+          {"most_taps", design.count},
           {"placement", program::name_of(design.placement)},
           {"guide", design.model == Model::guided ? json(design.guide) : json(nullptr)},
           {"non_negative", design.non_negative},
@@ -49,24 +51,6 @@ json json_of(const MaterialReport& material) {
           {"pixels", material.pixels},
           {"pixel_mm", or_null(material.pixel_mm)},
           {"design", design_of(material)}};
-}
-
-std::string_view name_of(TileKind kind) {
-  switch (kind) {
-    case TileKind::without_material:
-      return "without material";
-    case TileKind::narrow:
-      return "narrow";
-    case TileKind::unlit:
-      return "unlit";
-    case TileKind::uniform:
-      return "uniform";
-    case TileKind::flat:
-      return "flat";
-    case TileKind::curved:
-      return "curved";
-  }
-  return "";
 }
 
 json times_of(const StatsReport& report) {
@@ -83,14 +67,14 @@ std::string text_of(const MaterialReport& material) {
                   material.profile, material.pixels, material.radius_mm);
   if (material.design) {
     const TapsDesign& design = *material.design;
-    text += fmt::format("            {} rank {}, {} taps, placement {}", program::name_of(design.model), design.rank,
-                        design.count, program::name_of(design.placement));
+    text += fmt::format("            {} rank {}, {}{} taps, placement {}", program::name_of(design.model), design.rank,
+                        design.tolerance > 0 ? "up to " : "", design.count, program::name_of(design.placement));
     if (design.model == Model::guided) text += fmt::format(", guide {}", design.guide);
     if (design.non_negative) text += ", not negative";
     text += '\n';
   }
   if (material.predicted_rel_l2)
-    text += fmt::format("            predicted error {:.3g} % for pixels of {:.3g} mm\n",
+    text += fmt::format("            {} taps, predicted error {:.3g} % for pixels of {:.3g} mm\n", *material.taps,
                         100 * *material.predicted_rel_l2, *material.pixel_mm);
   return text;
 }
@@ -130,6 +114,7 @@ std::string text_of(const StatsReport& report) {
   text += fmt::format("camera      {}\n", text_of(report.camera));
   text += fmt::format("method      {}", name_of(options.method));
   if (options.method == Method::separable) text += fmt::format(", jitter {}, seed {}", options.jitter, options.seed);
+  if (!report.quality.empty()) text += fmt::format(", quality {}", report.quality);
   if (report.tolerance) text += fmt::format(", tolerance {}", *report.tolerance);
   text += '\n';
   for (const MaterialReport& material : report.materials) text += text_of(material);
@@ -152,6 +137,7 @@ std::string json_text_of(const StatsReport& report) {
   json object = {{"version", DERMIS_VERSION},
                  {"device", json_of(report.device)},
                  {"method", name_of(report.options.method)},
+                 {"quality", report.quality.empty() ? json(nullptr) : json(report.quality)},
                  {"tolerance", or_null(report.tolerance)},
                  {"jitter", report.options.jitter},
                  {"seed", report.options.seed},

@@ -19,7 +19,8 @@ struct MaterialReport {
   /// Size at the median depth, along the axis that has the smaller ones; none if no pixel is of the material.
   std::optional<double> pixel_mm;
   std::optional<TapsDesign> design;        ///< none if the method is exact
-  std::optional<double> predicted_rel_l2;  ///< of the design for pixels of that size, TapSet::predicted_rel_l2
+  std::optional<int> taps;                 ///< of the design for pixels of that size
+  std::optional<double> predicted_rel_l2;  ///< of them, TapSet::predicted_rel_l2
 };
 
 /// Wall clock of the steps around the device's own, milliseconds.
@@ -34,6 +35,7 @@ struct StepTimes {
 struct StatsReport {
   DeviceInfo device;
   Options options;
+  std::string quality;              ///< empty if another tolerance, a design or a method was asked for
   std::optional<double> tolerance;  ///< if the designs were chosen by it
   Stats stats;
   StepTimes times;

@@ -126,8 +126,8 @@ int run_taps(const TapsArguments& arguments) {
   const Profile profile = parse_profile("PROFILE", arguments.profile);
   const std::vector<Output> outputs = checked_outputs(arguments);
   TapsReport report{.profile = without_folders(arguments.profile),
-                    .model = arguments.design.model,
-                    .placement = arguments.design.placement,
+                    .model = std::string(name_of(design.model)),
+                    .placement = std::string(name_of(design.placement)),
                     .asked = design.count,
                     .width_follows_albedo = profile.width_follows_albedo(),
                     .set = make_set(arguments, profile, design)};

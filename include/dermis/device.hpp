@@ -47,6 +47,7 @@ class Device {
 
  private:
   struct State;
+  friend struct DeviceCache& cache_of(const Device& device);
   friend Device with_kernel_shape(const Device& device, int vector_width, std::string_view type);
   Device() = default;
   std::shared_ptr<const State> state_;

@@ -112,6 +112,9 @@ class Profile {
   /// The channel whose light spreads furthest.
   int widest_channel() const;
 
+  /// True if both are of one kind and made of the same numbers: all their values are then the same.
+  bool operator==(const Profile& other) const;
+
   /// True if a pixel's albedo sets how wide the profile is there: the profile of a pixel is then
   /// R(r / k) / k^2 with k = width_at(albedo) per channel.
   bool width_follows_albedo() const { return width_follows_albedo_; }

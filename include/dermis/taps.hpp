@@ -36,11 +36,17 @@ enum class Fetch {
 /// What taps to make of a profile.
 struct TapsDesign {
   Model model = Model::optimised;
-  int rank = 1;    ///< terms: 1 for most models, 1..6 for svd and gaussians, 1..3 for optimised
-  int count = 17;  ///< taps per pass, centre included: odd, 3..2047
+  /// Terms: 1 for most models, 1..6 for svd and gaussians, 1..3 for optimised. 0, with a tolerance: see with_rank.
+  int rank = 1;
+  int count = 17;  ///< taps per pass, centre included: odd, 3..2047; the most of them if there is a tolerance
   Placement placement = Placement::optimised;
   bool non_negative = false;  ///< optimised, rank 2 and 3: hold the approximated profile above zero, for a little error
   double guide = 2;           ///< guided: k in 0..4, sharper to smoother
+  /// An error to be content with, as TapSet::predicted_rel_l2, below 1: each width of kernel gets no more taps than
+  /// that takes, of 5, 7, 11, 17, 25, 33, 49, 65 and `count`. Where no count will do, because the model itself is
+  /// further off, they are as many as bring the error to 5/4 of the model's; kernels of more than 512 px radius have
+  /// those of one half as wide, or a quarter, and so on. 0: all widths get `count`.
+  double tolerance = 0;
 
   bool operator==(const TapsDesign&) const = default;
 };
@@ -65,7 +71,17 @@ struct TapSet {
   double predicted_rel_l2 = 0;
 };
 
-/// Taps for one pixel size. Throws Error(usage) if the design is out of range, or `pixel_mm` not in 1e-12..1e12.
+/// The terms that a model can have at most.
+int highest_rank(Model model);
+
+/// The design with a rank in place of 0: the lowest whose model alone is off by at most 3/4 of the tolerance, which
+/// leaves the rest to the taps; the highest if there is none. `pixel_mm` is the size of a pixel that this is to
+/// hold for; 0: the kernel has a radius of 64 of them. Throws Error(usage) if the design is out of range, or `pixel_mm`
+/// neither 0 nor in 1e-12..1e12.
+TapsDesign with_rank(const Profile& profile, const TapsDesign& design, double pixel_mm = 0);
+
+/// Taps for one pixel size; of the fewest taps that meet the tolerance, if the design has one. Throws Error(usage) if
+/// the design is out of range, or `pixel_mm` not in 1e-12..1e12.
 TapSet make_tap_set(const Profile& profile, const TapsDesign& design, double pixel_mm, Fetch fetch = Fetch::integer);
 
 /// The design with the fewest reads per pixel, (1 + rank) count, whose taps at whole pixels have a predicted error of

@@ -150,6 +150,8 @@ Device with_kernel_shape(const Device& device, int vector_width, std::string_vie
   return result;
 }
 
+DeviceCache& cache_of(const Device& device) { return *device.state_->cache; }
+
 const DeviceInfo& Device::info() const { return state_->info; }
 
 cl_context Device::context() const { return state_->context(); }

@@ -1,6 +1,7 @@
 // What the rest of the library needs of a Device.
 #pragma once
 
+#include "core/device_cache.hpp"
 #include "core/opencl.hpp"
 #include "dermis/device.hpp"
 
@@ -10,6 +11,7 @@ struct Device::State {
   cl::Device device;
   cl::Context context;
   DeviceInfo info;
+  std::shared_ptr<DeviceCache> cache = std::make_shared<DeviceCache>();
 };
 
 /// The same device, whose kernels are built as for one of another vector width (1, 4, 8 or 16) and type. So that the

@@ -5,7 +5,9 @@
 #include <cmath>
 #include <cstdint>
 #include <future>
+#include <memory>
 
+#include "core/device_cache.hpp"
 #include "core/linear_table.hpp"
 
 namespace dermis {
@@ -105,32 +107,41 @@ void append_exact_tables(const Profile& profile, params::MaterialParams& row, Ma
   row.cumulated = append([&](int c, double r) { return profile.cdf(c, r); });
 }
 
-/// The terms of a design, without fitting it.
-int terms_of(const TapsDesign& design) {
-  const bool has_rank =
-      design.model == Model::svd || design.model == Model::gaussians || design.model == Model::optimised;
-  return has_rank ? design.rank : 1;
+TapsDesign with_rank(const Device& device, const Profile& profile, const TapsDesign& design) {
+  if (design.rank > 0) return design;
+  return cache_of(device).designs.get({profile, design}, [&] { return with_rank(profile, design); });
+}
+
+std::shared_ptr<const Taps> fitted_taps(const Device& device, const Profile& profile, const TapsDesign& design) {
+  const TapsDesign ranked = with_rank(device, profile, design);
+  return cache_of(device).taps.get({profile, ranked},
+                                   [&] { return std::make_shared<const Taps>(make_taps(profile, ranked)); });
 }
 
 }  // namespace
 
-int most_terms(const std::vector<Material>& materials, const Options& options) {
+int most_terms(const Device& device, const std::vector<Material>& materials, const Options& options) {
   int most = 1;
-  for (const Material& material : materials) most = std::max(most, terms_of(material.taps.value_or(options.taps)));
+  for (const Material& material : materials) {
+    most = std::max(most, with_rank(device, material.profile, material.taps.value_or(options.taps)).rank);
+  }
   return most;
 }
 
-MaterialTables make_material_tables(const std::vector<Material>& materials, const Options& options, int terms) {
+MaterialTables make_material_tables(const Device& device, const std::vector<Material>& materials,
+                                    const Options& options, int terms) {
   MaterialTables tables;
-  std::vector<std::future<Taps>> fits;
+  std::vector<std::future<std::shared_ptr<const Taps>>> fits;
   fits.reserve(materials.size());
   for (const Material& material : materials) {
-    fits.push_back(std::async(std::launch::async,
-                              [&] { return make_taps(material.profile, material.taps.value_or(options.taps)); }));
+    fits.push_back(std::async(std::launch::async, [&] {
+      return fitted_taps(device, material.profile, material.taps.value_or(options.taps));
+    }));
   }
   for (std::size_t i = 0; i < materials.size(); ++i) {
     const Profile& profile = materials[i].profile;
-    const Taps taps = fits[i].get();
+    const std::shared_ptr<const Taps> its_taps = fits[i].get();
+    const Taps& taps = *its_taps;
     params::MaterialParams row{};
     row.radius_mm = static_cast<float>(taps.radius_mm);
     std::copy(taps.relative_width.begin(), taps.relative_width.end(), row.relative_width);

@@ -27,9 +27,10 @@ struct MaterialTables {
 inline constexpr int log2_nodes_per_octave_of_exact = 8;
 
 /// The most terms that a material has.
-int most_terms(const std::vector<Material>& materials, const Options& options);
+int most_terms(const Device& device, const std::vector<Material>& materials, const Options& options);
 
-/// Every material gets so many terms: those that it does not have weigh nothing.
-MaterialTables make_material_tables(const std::vector<Material>& materials, const Options& options, int terms);
+/// Every material gets so many terms: those that it does not have weigh nothing. Taps are fitted once per device.
+MaterialTables make_material_tables(const Device& device, const std::vector<Material>& materials,
+                                    const Options& options, int terms);
 
 }  // namespace dermis

@@ -1,6 +1,7 @@
 #include "dermis/plan.hpp"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <future>
 #include <set>
@@ -69,21 +70,26 @@ std::string define(const char* name, int value) { return std::string(" -D") + na
 /// What all kernels are built with.
 std::string common_options(const Plan::State& state, int materials) {
   const FrameDescription& frames = state.description;
+  std::ostringstream flatness;
+  flatness << " -DFLATNESS=" << std::scientific << Taps::flatness << "f";
   return "-cl-std=CL1.2" + define("MATERIALS", materials) + define("HAS_DEPTH", frames.depth ? 1 : 0) +
          define("HAS_MATERIAL", frames.material ? 1 : 0) + define("HAS_MASK", frames.mask ? 1 : 0) +
          define("HAS_ALBEDO", frames.albedo ? 1 : 0) + define("PIXEL_WIDTH", state.has_pixel_width ? 1 : 0) +
-         define("JITTER", state.options.jitter > 0 ? 1 : 0);
+         define("JITTER", state.options.jitter > 0 ? 1 : 0) + flatness.str();
 }
 
-cl::Program build_classification(const cl::Context& context, const Plan::State& state, const std::string& common) {
-  std::ostringstream flatness;
-  flatness << " -DFLATNESS=" << std::scientific << Taps::flatness << "f";
-  return build_program(context, cl::Device(state.device.id(), true), {"survey.cl"},
-                       common + define("V", CELL) + flatness.str());
+int vector_width(const Plan::State& state) { return state.item_is_pixel ? 1 : state.device.info().vector_width; }
+
+/// Every program costs PoCL 25 ms from its cache on disk, and 200 ms without, for headers and the library of built-in
+/// functions: all kernels are in one if they have vectors of the same width.
+bool is_one_program(const Plan::State& state) { return vector_width(state) == CELL; }
+
+cl::Program build_classification(const Plan::State& state, const std::string& common) {
+  return build_program(state.device, {"survey.cl"}, common + define("V", CELL));
 }
 
-cl::Program build_passes(const cl::Context& context, const Plan::State& state, const std::string& common,
-                         int log2_nodes_per_octave) {
+/// The passes, and the classification too if they are in one program.
+cl::Program build_passes(const Plan::State& state, const std::string& common) {
   std::vector<std::string> files = {"finish.cl"};
   if (state.tiled) {
     files.emplace_back("tile.cl");
@@ -91,11 +97,12 @@ cl::Program build_passes(const cl::Context& context, const Plan::State& state, c
     files.emplace_back("prepare.cl");
     files.emplace_back(state.options.method == Method::exact ? "exact.cl" : "pixel.cl");
   }
-  return build_program(context, cl::Device(state.device.id(), true), files,
-                       common + define("V", state.item_is_pixel ? 1 : state.device.info().vector_width) +
-                           define("TERMS", state.terms_per_material) + define("TILED", state.tiled ? 1 : 0) +
+  if (is_one_program(state)) files.emplace_back("survey.cl");
+  return build_program(state.device, files,
+                       common + define("V", vector_width(state)) + define("TERMS", state.terms_per_material) +
+                           define("TILED", state.tiled ? 1 : 0) +
                            define("LIT", state.options.lighting == Lighting::lit ? 1 : 0) +
-                           define("TABLE_SHIFT", 23 - log2_nodes_per_octave));
+                           define("TABLE_SHIFT", 23 - log2_nodes_per_octave_of_exact));
 }
 
 template <class Row>
@@ -135,6 +142,25 @@ class BorrowedMemory {
   std::unique_ptr<RunMemory> memory_;
 };
 
+/// Runs a plan on one black pixel. PoCL compiles a kernel when it is first launched, for the size of its
+/// work-groups: here instead of in the first frame.
+void run_on_black(const Plan& plan, const FrameDescription& frames) {
+  const std::array<float, 3> in{};
+  std::array<float, 3> out{};
+  const Image image{.host = in.data()};
+  const Image none;
+  Frame frame{.width = 1,
+              .height = 1,
+              .light = image,
+              .albedo = frames.albedo ? image : none,
+              .depth = frames.depth ? image : none,
+              .material = frames.material ? image : none,
+              .mask = frames.mask ? image : none,
+              .camera = Camera::orthographic(1, 1),
+              .scattered = {.host = out.data()}};
+  plan.run(frame);
+}
+
 }  // namespace
 
 Event::Event(cl_event adopted) : event_(adopted) {}
@@ -171,11 +197,13 @@ Plan::Plan(const Device& device, std::vector<Material> materials, const FrameDes
   with_device_errors([&] {
     const cl::Context context(device.context(), true);
     // The kernels are built while the taps are fitted.
-    state->terms_per_material = most_terms(materials, options);
-    auto classification = std::async(std::launch::async, [&] { return build_classification(context, *state, common); });
-    auto passes = std::async(std::launch::async,
-                             [&] { return build_passes(context, *state, common, log2_nodes_per_octave_of_exact); });
-    const MaterialTables tables = make_material_tables(materials, options, state->terms_per_material);
+    state->terms_per_material = most_terms(device, materials, options);
+    const auto async = [&](auto build) {
+      return std::async(std::launch::async, [&, build] { return build(*state, common); }).share();
+    };
+    const auto passes = async(build_passes);
+    const auto classification = is_one_program(*state) ? passes : async(build_classification);
+    const MaterialTables tables = make_material_tables(device, materials, options, state->terms_per_material);
     state->farthest_px = tables.farthest_px;
     state->materials = upload(context, tables.materials);
     state->terms = upload(context, tables.terms);
@@ -187,7 +215,9 @@ Plan::Plan(const Device& device, std::vector<Material> materials, const FrameDes
     state->classify_program = classification.get();
     state->program = passes.get();
   });
+  const bool compiles_at_launch = !state->item_is_pixel;
   state_ = std::move(state);
+  if (compiles_at_launch) run_on_black(*this, frames);
 }
 
 Plan::~Plan() = default;

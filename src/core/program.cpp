@@ -3,6 +3,7 @@
 #include <set>
 #include <sstream>
 
+#include "core/device_cache.hpp"
 #include "core/kernel_sources.hpp"
 
 namespace dermis {
@@ -26,6 +27,18 @@ void append_file(const std::string& name, std::set<std::string>& seen, std::stri
   }
 }
 
+cl::Program build(const cl::Context& context, const cl::Device& device, const std::string& source,
+                  const std::string& options) {
+  cl::Program program(context, source);
+  try {
+    program.build({device}, options.c_str());
+  } catch (const cl::Error&) {
+    const std::string log = program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device);
+    throw Error(ErrorCode::device, "kernels", log.substr(0, log.find('\n')), "a successful build");
+  }
+  return program;
+}
+
 }  // namespace
 
 std::string assemble_source(const std::vector<std::string>& files) {
@@ -35,16 +48,12 @@ std::string assemble_source(const std::vector<std::string>& files) {
   return source;
 }
 
-cl::Program build_program(const cl::Context& context, const cl::Device& device, const std::vector<std::string>& files,
-                          const std::string& options) {
-  cl::Program program(context, assemble_source(files));
-  try {
-    program.build({device}, options.c_str());
-  } catch (const cl::Error&) {
-    const std::string log = program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device);
-    throw Error(ErrorCode::device, "kernels", log.substr(0, log.find('\n')), "a successful build");
-  }
-  return program;
+cl::Program build_program(const Device& device, const std::vector<std::string>& files, const std::string& options) {
+  std::string key = options;
+  for (const std::string& file : files) key += " " + file;
+  return cache_of(device).programs.get(key, [&] {
+    return build(cl::Context(device.context(), true), cl::Device(device.id(), true), assemble_source(files), options);
+  });
 }
 
 }  // namespace dermis

@@ -5,14 +5,14 @@
 #include <vector>
 
 #include "core/opencl.hpp"
+#include "dermis/device.hpp"
 
 namespace dermis {
 
 /// Puts kernel files together, each #include of one replaced by its text the first time and dropped after that.
 std::string assemble_source(const std::vector<std::string>& files);
 
-/// Builds the files with the options. Throws Error(device) with the first line of the build log.
-cl::Program build_program(const cl::Context& context, const cl::Device& device, const std::vector<std::string>& files,
-                          const std::string& options);
+/// The files built with the options, once per device. Throws Error(device) with the first line of the build log.
+cl::Program build_program(const Device& device, const std::vector<std::string>& files, const std::string& options);
 
 }  // namespace dermis

@@ -42,7 +42,8 @@ std::size_t RunSizes::down_plane() const {
   if (workers == 0) return 0;
   const std::size_t reach = static_cast<std::size_t>(farthest_px) * (turns_taps ? 2 : 1) + 2;
   const std::size_t turned = turns_taps ? reach + CELL : 0;
-  const std::size_t columns = std::min<std::size_t>(stride(), round_up(tile_width, CELL) + 2 * turned + 2 * PADDING) + CELL;
+  const std::size_t columns =
+      std::min<std::size_t>(stride(), round_up(tile_width, CELL) + 2 * turned + 2 * PADDING) + CELL;
   // Without turned taps a row is not needed any more when the vertical pass is beyond it.
   constexpr std::size_t band_rows = CELL + 3;
   const std::size_t rows = std::min<std::size_t>(height, turns_taps ? tile_height + 2 * reach : 2 * reach + band_rows);

@@ -10,6 +10,11 @@ class BurleyCurve final : public SmoothCurve {
  public:
   explicit BurleyCurve(double d) : d_(d) {}
 
+  bool is_same_as(const RadialCurve& other) const override {
+    const auto* its = dynamic_cast<const BurleyCurve*>(&other);
+    return its != nullptr && its->d_ == d_;
+  }
+
   double radial(double r) const override;
   double disc(double r) const override;
   double disc_tail(double r) const override;

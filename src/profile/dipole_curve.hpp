@@ -35,6 +35,12 @@ class DipoleCurve final : public SmoothCurve {
 
   explicit DipoleCurve(const Sources& sources);
 
+  bool is_same_as(const RadialCurve& other) const override {
+    const auto* its = dynamic_cast<const DipoleCurve*>(&other);
+    return its != nullptr && its->s_ == s_ && its->z_r_ == z_r_ && its->z_v_ == z_v_ && its->flux_ == flux_ &&
+           its->fluence_ == fluence_;
+  }
+
   double radial(double r) const override;
   double disc(double r) const override;
   double disc_tail(double r) const override;

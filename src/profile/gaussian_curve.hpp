@@ -12,9 +12,15 @@ class GaussianCurve final : public RadialCurve {
   struct Term {
     double weight;    ///< > 0; all sum to 1
     double variance;  ///< mm^2
+    bool operator==(const Term&) const = default;
   };
 
   explicit GaussianCurve(std::vector<Term> terms);
+
+  bool is_same_as(const RadialCurve& other) const override {
+    const auto* its = dynamic_cast<const GaussianCurve*>(&other);
+    return its != nullptr && its->terms_ == terms_;
+  }
 
   double radial(double r) const override;
   double disc(double r) const override;

@@ -206,6 +206,12 @@ Profile Profile::tabulated(const std::vector<TableRow>& rows) {
   }));
 }
 
+bool Profile::operator==(const Profile& other) const {
+  const auto same = [](const auto& a, const auto& b) { return a == b || a->is_same_as(*b); };
+  return width_follows_albedo_ == other.width_follows_albedo_ &&
+         std::equal(curves_.begin(), curves_.end(), other.curves_.begin(), same);
+}
+
 double Profile::radial(int channel, double r_mm) const { return curve(channel).radial(r_mm); }
 
 double Profile::marginal(int channel, double x_mm) const { return curve(channel).marginal(std::abs(x_mm)); }

@@ -14,6 +14,9 @@ class RadialCurve {
   RadialCurve& operator=(const RadialCurve&) = delete;
   virtual ~RadialCurve() = default;
 
+  /// Whether the other one is of the same kind and made of the same numbers.
+  virtual bool is_same_as(const RadialCurve& other) const = 0;
+
   virtual double radial(double r) const = 0;     ///< R, r >= 0
   virtual double disc(double r) const = 0;       ///< light within r >= 0
   virtual double disc_tail(double r) const = 0;  ///< light beyond r >= 0

@@ -74,6 +74,14 @@ const TableCurve::Segment& TableCurve::segment_at(double r) const {
   return segments_[static_cast<std::size_t>(knot - knots_.begin())];
 }
 
+bool TableCurve::is_same_as(const RadialCurve& other) const {
+  const auto* its = dynamic_cast<const TableCurve*>(&other);
+  return its != nullptr && std::equal(segments_.begin(), segments_.end(), its->segments_.begin(), its->segments_.end(),
+                                      [](const Segment& a, const Segment& b) {
+                                        return a.from == b.from && a.to == b.to && a.coefficient == b.coefficient;
+                                      });
+}
+
 double TableCurve::radial(double r) const { return r > reach() ? 0 : std::max(0.0, segment_at(r).density(r)); }
 
 double TableCurve::disc(double r) const {

@@ -18,6 +18,8 @@ class TableCurve final : public RadialCurve {
   /// At least two radii, ascending, and as many values >= 0, not all of them 0.
   TableCurve(std::span<const double> radii, std::span<const double> values);
 
+  bool is_same_as(const RadialCurve& other) const override;
+
   double radial(double r) const override;
   double disc(double r) const override;
   double disc_tail(double r) const override;

@@ -1,14 +1,12 @@
 #include "taps/check_design.hpp"
 
+#include <sstream>
 #include <string>
 
 #include "dermis/error.hpp"
 
 namespace dermis {
 
-namespace {
-
-/// What a design may ask for of a model.
 int highest_rank(Model model) {
   switch (model) {
     case Model::svd:
@@ -24,14 +22,16 @@ int highest_rank(Model model) {
   return 1;
 }
 
-}  // namespace
-
 void check_design(const TapsDesign& design) {
   constexpr int most_taps = 2047;
   const int ranks = highest_rank(design.model);
-  if (design.rank < 1 || design.rank > ranks) {
+  if (!(design.tolerance >= 0 && design.tolerance < 1)) {
+    throw Error(ErrorCode::usage, "tolerance", std::to_string(design.tolerance), "at least 0 and below 1");
+  }
+  const bool automatic = design.rank == 0 && design.tolerance > 0;
+  if (!automatic && (design.rank < 1 || design.rank > ranks)) {
     throw Error(ErrorCode::usage, "rank", std::to_string(design.rank),
-                ranks == 1 ? "1 for this model" : "1.." + std::to_string(ranks) + " for this model");
+                (ranks == 1 ? "1" : "1.." + std::to_string(ranks)) + " for this model");
   }
   if (design.count < 3 || design.count > most_taps || design.count % 2 == 0) {
     throw Error(ErrorCode::usage, "taps", std::to_string(design.count), "an odd number, 3..2047");
@@ -39,6 +39,13 @@ void check_design(const TapsDesign& design) {
   if (!(design.guide >= 0 && design.guide <= 4)) {
     throw Error(ErrorCode::usage, "guide", std::to_string(design.guide), "0..4");
   }
+}
+
+void check_pixel_mm(double pixel_mm) {
+  if (pixel_mm >= 1e-12 && pixel_mm <= 1e12) return;
+  std::ostringstream seen;
+  seen << pixel_mm;
+  throw Error(ErrorCode::usage, "pixel_mm", seen.str(), "1e-12..1e12 mm");
 }
 
 }  // namespace dermis

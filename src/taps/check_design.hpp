@@ -8,4 +8,7 @@ namespace dermis {
 /// Throws Error(usage) that names what is out of range.
 void check_design(const TapsDesign& design);
 
+/// Throws Error(usage) if pixels cannot be of that size.
+void check_pixel_mm(double pixel_mm);
+
 }  // namespace dermis

@@ -27,6 +27,10 @@ std::shared_ptr<const PowerGrid> grid_of(int period_px) {
   return grid;
 }
 
+/// What is farther is compared on larger pixels: the period would be too long.
+constexpr int farthest_px = 4000;
+constexpr int least_reach_px = 127;  // makes the period that of the images
+
 /// A period that keeps products of two rows of taps apart.
 int period_for(int last_px) {
   int period = 256;
@@ -90,9 +94,6 @@ std::array<ChannelOnPixels, 3> DesignedTaps::on_pixels(double pixel_mm, int last
 }
 
 double DesignedTaps::predicted_rel_l2(const PlacedTaps& placed, double pixel_mm) const {
-  // Taps further apart than the longest period are compared on larger pixels.
-  constexpr int farthest_px = 4000;
-  constexpr int least_reach_px = 127;  // makes the period that of the images
   PlacedTaps taps = placed;
   while (!taps.offsets_px.empty() && taps.offsets_px.back() > farthest_px) {
     for (double& offset_px : taps.offsets_px) offset_px /= 2;
@@ -107,6 +108,24 @@ double DesignedTaps::predicted_rel_l2(const PlacedTaps& placed, double pixel_mm)
     truths[c] = channels[c].truth_power();
   }
   return relative_l2(errors, truths);
+}
+
+double DesignedTaps::model_rel_l2(double pixel_mm) const {
+  pixel_mm = std::max(pixel_mm, radius_mm_ / farthest_px);
+  const auto channels = on_pixels(pixel_mm, std::max(static_cast<int>(radius_mm_ / pixel_mm), least_reach_px));
+  std::array<double, 3> errors{};
+  std::array<double, 3> truths{};
+  for (int c = 0; c < 3; ++c) {
+    errors[c] = channels[c].squared_error(channels[c].model());
+    truths[c] = channels[c].truth_power();
+  }
+  return relative_l2(errors, truths);
+}
+
+DesignedTaps DesignedTaps::with_count(int count) const {
+  DesignedTaps result = *this;
+  result.design_.count = count;
+  return result;
 }
 
 SizedTaps DesignedTaps::at(double pixel_mm, Fetch fetch, Search search, const std::vector<double>& near_px) const {

@@ -30,6 +30,13 @@ class DesignedTaps {
   /// The error to expect of taps that were placed for this size, over natural images.
   double predicted_rel_l2(const PlacedTaps& placed, double pixel_mm) const;
 
+  /// The same of the model itself, as if each pixel had a tap and the kernel no end.
+  double model_rel_l2(double pixel_mm) const;
+
+  /// The same model with other taps.
+  DesignedTaps with_count(int count) const;
+
+  int count() const { return design_.count; }
   const std::vector<ModelTerm>& model() const { return model_; }
   double radius_mm() const { return radius_mm_; }
   /// The radius of one channel's own marginal.

@@ -1,6 +1,8 @@
 #include "taps/expected_error.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 namespace dermis {
@@ -27,6 +29,7 @@ PowerGrid::PowerGrid(int period)
       coarse_waves(coarse.u),
       fine_waves(fine.u),
       power(coarse.size(), fine.size()),
+      cosines_(VectorXd::LinSpaced(period, 0, 2 * std::numbers::pi * (period - 1) / period).array().cos()),
       below_(fine.size()),
       share_of_next_(fine.size()) {
   for (int i = 0; i < coarse.size(); ++i) {
@@ -44,9 +47,21 @@ PowerGrid::PowerGrid(int period)
 }
 
 VectorXd PowerGrid::response(const VectorXd& row) const {
-  VectorXd half = VectorXd::Zero(fine.size());
-  half.head(row.size()) = row;
-  return even_transform(half);
+  const auto taps = (row.array() != 0).count();
+  // Few taps are summed one by one, sooner than all frequencies are transformed.
+  constexpr int most_taps = 40;
+  if (taps > most_taps) {
+    VectorXd half = VectorXd::Zero(fine.size());
+    half.head(row.size()) = row;
+    return even_transform(half);
+  }
+  VectorXd result = VectorXd::Constant(fine.size(), row[0]);
+  for (int k = 1; k < row.size(); ++k) {
+    if (row[k] == 0) continue;
+    const double both = k == period_px / 2 ? row[k] : 2 * row[k];
+    for (int j = 0, at = 0; j < result.size(); ++j, at = (at + k) & (period_px - 1)) result[j] += both * cosines_[at];
+  }
+  return result;
 }
 
 VectorXd PowerGrid::moments(const VectorXd& x) const {
@@ -56,13 +71,32 @@ VectorXd PowerGrid::moments(const VectorXd& x) const {
   return even_transform(half);
 }
 
+double PowerGrid::moment(const VectorXd& x, int k) const {
+  double sum = 0;
+  for (int j = 0, at = 0; j < x.size(); ++j, at = (at + k) & (period_px - 1)) {
+    sum += x[j] * fine.weight[j] * cosines_[at];
+  }
+  return sum;
+}
+
 MatrixXd PowerGrid::to_fine(const MatrixXd& at_coarse) const {
   MatrixXd result(fine.size(), at_coarse.cols());
-  for (int j = 0; j < fine.size(); ++j) {
-    result.row(j) =
-        at_coarse.row(below_[j]) + share_of_next_[j] * (at_coarse.row(below_[j] + 1) - at_coarse.row(below_[j]));
+  for (Index column = 0; column < at_coarse.cols(); ++column) {
+    const auto from = at_coarse.col(column);
+    for (int j = 0; j < fine.size(); ++j) {
+      const double low = from[below_[j]];
+      result(j, column) = low + share_of_next_[j] * (from[below_[j] + 1] - low);
+    }
   }
   return result;
+}
+
+const MatrixXd& PowerGrid::moments_of_coarse() const {
+  if (moments_of_coarse_.size() > 0) return moments_of_coarse_;
+  const MatrixXd shares = to_fine(MatrixXd::Identity(coarse.size(), coarse.size()));
+  moments_of_coarse_.resize(coarse.size(), fine.size());
+  for (Index i = 0; i < coarse.size(); ++i) moments_of_coarse_.row(i) = moments(shares.col(i)).transpose();
+  return moments_of_coarse_;
 }
 
 ChannelOnPixels::ChannelOnPixels(std::shared_ptr<const PowerGrid> grid, const std::vector<Gaussian>& mixture,
@@ -86,20 +120,39 @@ ChannelOnPixels::ChannelOnPixels(std::shared_ptr<const PowerGrid> grid, const st
   MatrixXd mixture_at_fine;
   responses(grid_->coarse_waves, mixture_at_coarse, at_coarse_);
   responses(grid_->fine_waves, mixture_at_fine, at_fine_);
-  truth_.noalias() = mixture_at_coarse * weights.asDiagonal() * mixture_at_fine.transpose();
-  truth_power_ = grid_->coarse.weight.dot((grid_->power.array() * truth_.array().square()).rowwise().sum().matrix());
+  MatrixXd truth;
+  truth.noalias() = mixture_at_coarse * weights.asDiagonal() * mixture_at_fine.transpose();
+  weighted_truth_ = grid_->power.cwiseProduct(truth);
+  squared_truth_ = weighted_truth_.cwiseProduct(truth).rowwise().sum();
 }
 
 AxisError ChannelOnPixels::axis_error(const Responses& beta) const {
-  const MatrixXd missing = truth_ - at_coarse_ * scale_.asDiagonal() * beta.transpose();
-  const MatrixXd weighted = grid_->power.cwiseProduct(missing);
+  const MatrixXd model = at_coarse_ * scale_.asDiagonal();
   AxisError error;
-  error.constant = grid_->to_fine(weighted.cwiseProduct(missing).rowwise().sum());
-  error.linear = grid_->to_fine(weighted * beta * scale_.asDiagonal());
+  // Column by column, as Eigen's product of matrices is made for wider ones.
+  error.linear.resize(model.rows(), terms());
+  for (int t = 0; t < terms(); ++t) error.linear.col(t).noalias() = weighted_truth_ * beta.col(t);
+  error.quadratic.resize(model.rows(), terms() * (terms() + 1) / 2);
+  for (int t = 0; t < terms(); ++t) {
+    for (int other = 0; other <= t; ++other) {
+      error.quadratic.col(AxisError::pair_of(t, other)).noalias() =
+          grid_->power * beta.col(t).cwiseProduct(beta.col(other));
+    }
+  }
+  // The square of truth less model, and its product with beta, multiplied out. What cancels is rounding of 1e-16 of the
+  // truth's square, an error of 1e-8.
+  error.constant = squared_truth_ - 2 * model.cwiseProduct(error.linear).rowwise().sum();
   for (int t = 0; t < terms(); ++t) {
     for (int other = 0; other < terms(); ++other) {
-      error.quadratic.emplace_back(
-          grid_->to_fine(scale_[t] * scale_[other] * (grid_->power * beta.col(t).cwiseProduct(beta.col(other)))));
+      const auto quadratic = error.quadratic.col(AxisError::pair_of(t, other));
+      error.constant += model.col(t).cwiseProduct(model.col(other)).cwiseProduct(quadratic);
+      error.linear.col(t) -= model.col(other).cwiseProduct(quadratic);
+    }
+  }
+  error.linear *= scale_.asDiagonal();
+  for (int t = 0; t < terms(); ++t) {
+    for (int other = 0; other <= t; ++other) {
+      error.quadratic.col(AxisError::pair_of(t, other)) *= scale_[t] * scale_[other];
     }
   }
   return error;
@@ -107,12 +160,14 @@ AxisError ChannelOnPixels::axis_error(const Responses& beta) const {
 
 double ChannelOnPixels::squared_error(const Responses& responses) const {
   const AxisError error = axis_error(responses);
+  const MatrixXd linear = grid_->to_fine(error.linear);
+  const MatrixXd quadratic = grid_->to_fine(error.quadratic);
   const Responses delta = responses - at_fine_;
-  VectorXd sum = error.constant;
+  VectorXd sum = grid_->to_fine(error.constant);
   for (int t = 0; t < terms(); ++t) {
-    sum -= 2 * delta.col(t).cwiseProduct(error.linear.col(t));
+    sum -= 2 * delta.col(t).cwiseProduct(linear.col(t));
     for (int other = 0; other < terms(); ++other) {
-      sum += error.quadratic[t * terms() + other].cwiseProduct(delta.col(t)).cwiseProduct(delta.col(other));
+      sum += quadratic.col(AxisError::pair_of(t, other)).cwiseProduct(delta.col(t)).cwiseProduct(delta.col(other));
     }
   }
   return std::max(0.0, sum.dot(grid_->fine.weight));

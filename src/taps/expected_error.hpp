@@ -22,9 +22,13 @@ struct PowerGrid {
 
   /// The sums over the fine frequencies of weight x cos(u k), for k = 0..period/2.
   Eigen::VectorXd moments(const Eigen::VectorXd& x) const;
+  /// One of them, for fewer than a logarithm of the period.
+  double moment(const Eigen::VectorXd& x, int k) const;
 
   /// Values at the coarse frequencies, taken to the fine ones linearly in the logarithm of frequency.
   Eigen::MatrixXd to_fine(const Eigen::MatrixXd& at_coarse) const;
+  /// In column k what each of the coarse values adds to the moment k of the fine ones.
+  const Eigen::MatrixXd& moments_of_coarse() const;
 
   int period_px;
   Frequencies coarse;
@@ -36,9 +40,11 @@ struct PowerGrid {
  private:
   Eigen::VectorXd even_transform(const Eigen::VectorXd& half) const;
 
-  mutable Eigen::FFT<double> fft_;  ///< keeps its factors
-  std::vector<int> below_;          ///< coarse frequency below each fine one
-  Eigen::VectorXd share_of_next_;   ///< of the one above
+  mutable Eigen::FFT<double> fft_;             ///< keeps its factors
+  mutable Eigen::MatrixXd moments_of_coarse_;  ///< made when first asked for
+  Eigen::VectorXd cosines_;                    ///< of 2 pi j / period, j = 0..period-1
+  std::vector<int> below_;                     ///< coarse frequency below each fine one
+  Eigen::VectorXd share_of_next_;              ///< of the one above
 };
 
 /// Responses along one axis of the terms of one channel, one per column.
@@ -47,10 +53,13 @@ using Responses = Eigen::MatrixXd;
 /// The error of sum over terms of scale alpha(u) beta(v) against the profile on pixels, squared and summed over images,
 /// where beta is given and alpha = model + delta:
 ///     constant - 2 sum over terms of delta linear + sum over pairs of terms of delta delta' quadratic, summed over u.
+/// All per coarse frequency.
 struct AxisError {
-  Eigen::VectorXd constant;                ///< per fine frequency
-  Eigen::MatrixXd linear;                  ///< per fine frequency and term; scales are in it
-  std::vector<Eigen::VectorXd> quadratic;  ///< per fine frequency; of the terms t, t' at index t terms + t'
+  Eigen::VectorXd constant;
+  Eigen::MatrixXd linear;     ///< a column per term; scales are in it
+  Eigen::MatrixXd quadratic;  ///< of the terms t, t' in the column pair_of(t, t')
+
+  static int pair_of(int t, int other) { return t >= other ? t * (t + 1) / 2 + other : other * (other + 1) / 2 + t; }
 };
 
 /// One channel of a profile and its model on pixels of one size.
@@ -64,7 +73,7 @@ class ChannelOnPixels {
   int terms() const { return static_cast<int>(scale_.size()); }
 
   /// The squared truth, mean apart: what errors are measured against.
-  double truth_power() const { return truth_power_; }
+  double truth_power() const { return grid_->coarse.weight.dot(squared_truth_); }
 
   AxisError axis_error(const Responses& beta) const;
 
@@ -74,10 +83,10 @@ class ChannelOnPixels {
  private:
   std::shared_ptr<const PowerGrid> grid_;
   Eigen::VectorXd scale_;
-  Eigen::MatrixXd truth_;  ///< spectrum of the profile on pixels, coarse by fine
-  Responses at_coarse_;    ///< of the model
+  Eigen::MatrixXd weighted_truth_;  ///< spectrum of the profile on pixels, coarse by fine, times the power
+  Eigen::VectorXd squared_truth_;   ///< its square times the power, summed over fine frequencies
+  Responses at_coarse_;             ///< of the model
   Responses at_fine_;
-  double truth_power_ = 0;
 };
 
 /// Relative L2 distance, all channels together, from squared errors and truths of the channels. Images have mean 1.

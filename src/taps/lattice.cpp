@@ -1,5 +1,6 @@
 #include "taps/lattice.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -11,7 +12,8 @@ namespace {
 
 // Narrow Gaussians lie on few pixels. Wide ones have a spectrum of which all but e^-32 lies within three periods.
 constexpr double narrow_px = 1.2;
-constexpr int farthest_px = 10;  // 8 standard deviations of a narrow one
+constexpr int farthest_px = 10;          // 8 standard deviations of a narrow one
+constexpr double largest_exponent = 40;  // e^-40 is below the rounding of 1
 
 }  // namespace
 
@@ -27,16 +29,29 @@ LatticeWaves::LatticeWaves(const Eigen::VectorXd& u)
 
 Eigen::VectorXd LatticeWaves::of_gaussian(double sigma_px) const {
   if (sigma_px < narrow_px) {
-    const auto tail = [&](double x_px) { return std::erfc(x_px / (sigma_px * std::numbers::sqrt2)) / 2; };
     Eigen::VectorXd light = Eigen::VectorXd::Zero(farthest_px + 1);
-    light[0] = 1 - 2 * tail(0.5);
-    for (int i = 1; i <= farthest_px; ++i) light[i] = 2 * (tail(i - 0.5) - tail(i + 0.5));
+    double beyond = 0.5;  // of the pixel before
+    for (int i = 0; i <= farthest_px && beyond > 0; ++i) {
+      const double tail = std::erfc((i + 0.5) / (sigma_px * std::numbers::sqrt2)) / 2;
+      light[i] = 2 * (beyond - tail);
+      beyond = tail;
+    }
     return cosines_ * light;
   }
-  Eigen::VectorXd response = Eigen::VectorXd::Zero(cosines_.rows());
+  // Frequencies ascend, and so do those of the images, but for the sign of the first image's.
+  const double largest_square = 2 * largest_exponent / (sigma_px * sigma_px);
+  const Eigen::Index count = cosines_.rows();
+  Eigen::VectorXd response = Eigen::VectorXd::Zero(count);
   for (int image = 0; image < 3; ++image) {
-    response.array() +=
-        (-sigma_px * sigma_px / 2 * squared_images_.col(image).array()).exp() * pixel_responses_.col(image).array();
+    const double* const squares = squared_images_.col(image).data();
+    const bool falls = image == 0;
+    const auto near = [&](double square) { return square <= largest_square; };
+    const auto far = [&](double square) { return square > largest_square; };
+    const Eigen::Index first = falls ? std::partition_point(squares, squares + count, far) - squares : 0;
+    const Eigen::Index last = falls ? count : std::partition_point(squares, squares + count, near) - squares;
+    response.segment(first, last - first).array() +=
+        (-sigma_px * sigma_px / 2 * squared_images_.col(image).segment(first, last - first).array()).exp() *
+        pixel_responses_.col(image).segment(first, last - first).array();
   }
   return response;
 }

@@ -1,11 +1,12 @@
 // Taps for one size of pixel, as callers see them.
 #include <algorithm>
 #include <cmath>
-#include <sstream>
+#include <optional>
+#include <utility>
 
-#include "dermis/error.hpp"
 #include "taps/check_design.hpp"
 #include "taps/designed_taps.hpp"
+#include "taps/tap_budget.hpp"
 
 namespace dermis {
 
@@ -29,19 +30,33 @@ std::vector<double> quantised_row(const Eigen::VectorXd& side, double sum, doubl
   return row;
 }
 
+struct PredictedTaps {
+  SizedTaps taps;
+  double rel_l2;
+};
+
+/// Of the counts to choose from, the first that is good enough, else the best.
+PredictedTaps fewest_taps(const DesignedTaps& designed, const TapsDesign& design, double pixel_mm, Fetch fetch) {
+  std::optional<PredictedTaps> best;
+  const double enough = design.tolerance > 0 ? worthwhile_rel_l2(designed, design.tolerance, pixel_mm) : 0;
+  for (const int count : tap_counts(design)) {
+    SizedTaps taps = designed.with_count(count).at(pixel_mm, fetch);
+    const double rel_l2 = designed.predicted_rel_l2(taps.placed, pixel_mm);
+    if (!best || rel_l2 < best->rel_l2) best = {std::move(taps), rel_l2};
+    if (best->rel_l2 <= enough) break;
+  }
+  return *std::move(best);
+}
+
 }  // namespace
 
 TapSet make_tap_set(const Profile& profile, const TapsDesign& design, double pixel_mm, Fetch fetch) {
   check_design(design);
-  if (!(pixel_mm >= 1e-12 && pixel_mm <= 1e12)) {
-    std::ostringstream seen;
-    seen << pixel_mm;
-    throw Error(ErrorCode::usage, "pixel_mm", seen.str(), "1e-12..1e12 mm");
-  }
-  const DesignedTaps designed(profile, design);
-  const SizedTaps sized = designed.at(pixel_mm, fetch);
+  check_pixel_mm(pixel_mm);
+  const DesignedTaps designed(profile, with_rank(profile, design, pixel_mm));
+  const auto [sized, predicted_rel_l2] = fewest_taps(designed, design, pixel_mm, fetch);
   const std::vector<double>& side = sized.placed.offsets_px;
-  TapSet result{pixel_mm, fetch, {}, {}, designed.predicted_rel_l2(sized.placed, pixel_mm)};
+  TapSet result{pixel_mm, fetch, {}, {}, predicted_rel_l2};
   for (auto offset = side.rbegin(); offset != side.rend(); ++offset) result.offsets_px.push_back(-*offset);
   result.offsets_px.push_back(0);
   result.offsets_px.insert(result.offsets_px.end(), side.begin(), side.end());

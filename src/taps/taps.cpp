@@ -8,6 +8,7 @@
 #include "taps/check_design.hpp"
 #include "taps/designed_taps.hpp"
 #include "taps/radial_table.hpp"
+#include "taps/tap_budget.hpp"
 
 namespace dermis {
 
@@ -60,6 +61,7 @@ TapWeight follow(const std::array<double, 3>& weights, const std::array<double, 
                  const std::array<double, 3>& first_weights, double its_length_mm, bool normalised) {
   constexpr double longest_of_correction = 4;
   constexpr double longest = 1e4;
+  constexpr double largest_share = 1e4;
   TapWeight result{};
   for (int c = 0; c < 3; ++c) {
     if (densities[c] == 0) continue;
@@ -69,7 +71,9 @@ TapWeight follow(const std::array<double, 3>& weights, const std::array<double, 
     } else {
       length_mm = std::clamp(length_mm, 0.0, longest_of_correction * its_length_mm);
       const double rest = weights[c] - length_mm * densities[c];
-      if (first_weights[c] > 0) result.share[c] = static_cast<float>(rest / first_weights[c]);
+      if (std::abs(rest) < largest_share * first_weights[c]) {
+        result.share[c] = static_cast<float>(rest / first_weights[c]);
+      }
     }
     result.length_mm[c] = static_cast<float>(length_mm);
   }
@@ -169,12 +173,6 @@ Rung make_rung(const SizedTaps& taps, const std::vector<Term>& terms, double foo
   return rung;
 }
 
-/// Offsets of one rung as a start for the next.
-std::vector<double> scaled(std::vector<double> offsets_px, double ratio) {
-  for (double& offset_px : offsets_px) offset_px *= ratio;
-  return offsets_px;
-}
-
 /// The same taps for pixels half the size.
 Rung spread(Rung rung) {
   rung.footprint *= 2;
@@ -194,34 +192,22 @@ int Taps::rung_index(float radius_px) {
 
 Taps make_taps(const Profile& profile, const TapsDesign& design) {
   check_design(design);
-  const DesignedTaps designed(profile, design);
+  TapBudget budget(profile, with_rank(profile, design));
+  const DesignedTaps& designed = budget.designed();
   Taps taps;
   taps.radius_mm = designed.radius_mm();
   for (int c = 0; c < 3; ++c) taps.relative_width[c] = static_cast<float>(designed.radius_mm(c) / taps.radius_mm);
   for (const ModelTerm& term : designed.model()) taps.terms.push_back(make_term(profile, term, taps.radius_mm));
-  // Many taps are where they were, but for the scale; a search for each rung would take a second.
-  constexpr int most_unknowns = 24;
-  const int search_step = design.rank * (design.count / 2) <= most_unknowns ? 1 : 4;
-  std::vector<double> near_px;
-  double previous_px = 0;
   for (int i = 0; i < Taps::octaves * rungs_per_octave; ++i) {
-    const double middle = 1 + (i % rungs_per_octave + 0.5) / rungs_per_octave;
-    const double radius_px = std::ldexp(Taps::min_radius_px * middle, i / rungs_per_octave);
+    const double radius_px = middle_radius_px(i);
     // Pixels are small against everything in wider kernels; the taps of one octave serve the next.
     constexpr double widest_fitted_px = 512;
     if (radius_px > widest_fitted_px && design.count < widest_fitted_px) {
       taps.rungs.push_back(spread(taps.rungs[i - rungs_per_octave]));
       continue;
     }
-    const double footprint = radius_px / taps.radius_mm;
-    const bool as_many = static_cast<int>(near_px.size()) == design.count / 2;
-    const bool look = i % search_step == 0;
-    const Search search = !as_many ? Search::everywhere : look ? Search::nearby : Search::nowhere;
-    const SizedTaps sized =
-        designed.at(1 / footprint, Fetch::integer, search, scaled(near_px, radius_px / previous_px));
-    near_px = sized.placed.offsets_px;
-    previous_px = radius_px;
-    taps.rungs.push_back(make_rung(sized, taps.terms, footprint, 1 / (rungs_per_octave * middle)));
+    const double width_px = std::ldexp(Taps::min_radius_px, i / rungs_per_octave) / rungs_per_octave;
+    taps.rungs.push_back(make_rung(budget.at(i), taps.terms, radius_px / taps.radius_mm, width_px / radius_px));
   }
   return taps;
 }

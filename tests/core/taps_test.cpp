@@ -95,9 +95,10 @@ TEST_CASE("every rung holds all light in sorted, distinct whole-pixel taps", "[t
             for (const double weight : weights) REQUIRE(std::isfinite(weight));
             if (!taps.terms[t].normalised) continue;
             for (const double weight : weights) REQUIRE(weight >= 0);
-            // A tap that lies where a narrow channel has no light loses the light of its run.
-            // The narrowest of several Gaussians may have all of its light between taps; a pass divides by the sum.
-            REQUIRE(sum_of(weights) == Approx(1).margin(design.model == Model::gaussians ? 1 : 0.03));
+            // A tap that lies where the tables of a narrow channel know of no light loses the light of its run, and
+            // the narrowest of several Gaussians may have all of it there; a pass divides by the sum.
+            REQUIRE(sum_of(weights) < 1 + 5e-3);
+            if (design.model != Model::gaussians) REQUIRE(sum_of(weights) > 1 - 0.03);
           }
         }
       }
@@ -169,10 +170,10 @@ TEST_CASE("tables follow the profile", "[taps]") {
         // The octaves of the falloff reach to a hundredth of the widest channel's radius, those of the core to a
         // thousandth and less.
         if (x > taps.radius_mm / 60) {
-          CHECK(dermis::value_at(taps.terms[0].falloff, c, x) == Approx(preset.profile.marginal(c, x)).epsilon(3e-2));
+          CHECK(dermis::value_at(taps.terms[0].falloff, c, x) == Approx(preset.profile.marginal(c, x)).epsilon(1.5e-2));
         }
         if (x > taps.radius_mm / 2000) {
-          CHECK(dermis::value_at(taps.terms[0].core, c, std::sqrt(x)) == Approx(share).epsilon(2e-2));
+          CHECK(dermis::value_at(taps.terms[0].core, c, std::sqrt(x)) == Approx(share).epsilon(4e-3));
         }
       }
     }

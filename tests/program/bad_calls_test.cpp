@@ -99,6 +99,10 @@ TEST_CASE("values outside their ranges are usage errors that name argument, valu
                                    {"--px-per-unit", "-3", "> 0"},
                                    {"--threads", "0", "> 0"},
                                    {"--compression", "gzip", "piz"},
+                                   {"--quality", "best", "draft or preview or final or reference"},
+                                   {"--rank", "any", "or auto"},
+                                   {"--bad-pixels", "fix", "keep or zero or error"},
+                                   {"--tile-map", "out.jpg", ".png"},
                                    {"--preview", "out.jpg", ".png"}};
   for (const Case& c : cases) {
     INFO(c.option << " " << c.value);
@@ -127,18 +131,31 @@ TEST_CASE("a design that the model does not know is a usage error that names the
   }
 }
 
-TEST_CASE("a tolerance leaves no design to be asked for") {
+TEST_CASE("what contradicts a quality is a usage error that names both") {
   const GoodCall call;
-  const std::vector<Words> designs = {{"--model", "artist"},         {"--rank", "2"},  {"--taps", "9"},
-                                      {"--placement", "importance"}, {"--guide", "1"}, {"--non-negative"},
-                                      {"--method", "exact"}};
-  for (const Words& design : designs) {
-    Words before = design;
-    before.insert(before.end(), {"--tolerance", "0.05"});
-    call.check_refuses(before, 2, {design.front(), "--tolerance"});
-    Words after = {"--tolerance", "0.05"};
-    after.insert(after.end(), design.begin(), design.end());
-    call.check_refuses(after, 2, {design.front(), "--tolerance"});
+  struct Case {
+    Words words;
+    Words parts;
+  };
+  const std::vector<Case> cases = {
+      {{"--tolerance", "0.05", "--taps", "9"}, {"--taps: got 9 with --tolerance 0.05", "want auto"}},
+      {{"--taps", "dense", "--tolerance", "0.05"}, {"--taps: got dense with --tolerance 0.05", "want auto"}},
+      {{"--quality", "draft", "--taps", "9"}, {"--taps: got 9 with --quality draft", "want auto"}},
+      {{"--rank", "auto", "--taps", "9"}, {"--taps: got 9 with --rank auto", "want auto"}},
+      {{"--quality", "draft", "--tolerance", "0.05"}, {"--quality: got draft with --tolerance 0.05", "one of the two"}},
+      {{"--quality", "draft", "--method", "exact"}, {"--quality: got draft with --method exact", "want reference"}},
+      {{"--tolerance", "0.05", "--method", "exact"}, {"--tolerance: got 0.05 with --method exact"}},
+      {{"--quality", "reference", "--method", "separable"}, {"--quality: got reference with --method separable"}},
+      {{"--quality", "reference", "--taps", "9"}, {"--quality: got reference with --taps 9"}},
+      {{"--quality", "reference", "--rank", "auto"}, {"--quality: got reference with --rank auto"}},
+      {{"--tolerance", "0.05", "--guide", "1"}, {"--guide: got 1 for --model optimised", "--model guided"}},
+      {{"--tolerance", "0.05", "--rank", "4"}, {"--rank: got 4", "1..3"}},
+      {{"--method", "exact", "--tile-map", call.folder() / "t.png"}, {"--tile-map: got", "the exact method"}},
+      {{"--quality", "reference", "--tile-map", call.folder() / "t.png"}, {"--tile-map: got", "the exact method"}}};
+  for (const Case& c : cases) {
+    INFO(c.parts.front());
+    call.check_refuses(c.words, 2, c.parts);
+    CHECK_FALSE(fs::exists(call.folder() / "t.png"));
   }
 }
 
@@ -176,6 +193,7 @@ TEST_CASE("options that contradict each other are usage errors") {
   call.check_refuses({"--profile", "skin"}, 2, {"--material", "--profile"});
   call.check_refuses({"--fov", "40", "--focal-px", "100"}, 2, {"--fov", "--focal-px"});
   call.check_refuses({"--stats", "--stats-json", "-"}, 2, {"--stats-json"});
+  call.check_refuses({"--tile-map", call.folder() / "t.png", "--stats-json", "-"}, 2, {"--stats-json", "--tile-map"});
   call.check_refuses({}, 2, {"--material", "--profile"}, "--material");
   call.check_refuses({"--material", "1=wax"}, 2, {"--material: got 1=wax", "once"});
 }
@@ -301,6 +319,7 @@ TEST_CASE("an output that cannot be written is an error before the work") {
   fs::create_directory(folder);
   check(folder, "not of a folder");
   call.check_refuses({"-o", call.folder() / "out.tiff"}, 2, {"--output", "out.tiff", ".exr"}, "-o");
+  call.check_refuses({"--tile-map", call.folder() / "nosuch/t.png"}, 6, {"--tile-map", "nosuch/t.png"});
   call.check_refuses({"--preview", call.folder() / "nosuch/p.png"}, 6, {"--preview", "nosuch/p.png"});
   call.check_refuses({"--stats-json", call.folder() / "nosuch/s.json"}, 6, {"--stats-json", "nosuch/s.json"});
   // a folder in which nobody can make files, not even root

@@ -166,70 +166,99 @@ TEST_CASE("every model of every rank spreads light, and leaves constant light as
   }
 }
 
-TEST_CASE("the design that is not asked for is that of the library") {
+TEST_CASE("a design that is asked for in part is that of the library in all else") {
   const TemporaryFolder folder;
   const MadeScene scene = make_scene(folder / "in.exr", "step", 31, 20, 4);
-  const json stats = stats_of(filter_arguments(scene, folder / "out.exr", {"--material", "1=skin"}));
   const TapsDesign expected = dermis::Options{}.taps;
+  const Words call = {"--material", "1=skin", "--rank", std::to_string(expected.rank)};
+  const json stats = stats_of(filter_arguments(scene, folder / "out.exr", call));
   const json& material = stats["materials"][0];
   check_is(material["design"], expected);
+  CHECK(material["design"]["most_taps"] == expected.count);
   CHECK(stats["tolerance"].is_null());
+  CHECK(stats["quality"].is_null());
   CHECK(stats["method"] == "separable");
   // The step is parallel to the screen: 4 pixels per mm everywhere.
   CHECK(material["pixel_mm"].get<double>() == Approx(0.25).epsilon(1e-6));
   const auto set = make_tap_set(dermis::preset("skin").profile, expected, material["pixel_mm"]);
   CHECK(material["design"]["predicted_rel_l2"].get<double>() == Approx(set.predicted_rel_l2).epsilon(1e-9));
-  const std::string table = run_well(filter_arguments(scene, folder / "out.exr", {"--material", "1=skin", "--stats"}));
+  const std::string table = run_well(filter_arguments(scene, folder / "out.exr", with(call, {"--stats"})));
   std::ostringstream expected_text;
   expected_text << "rank " << expected.rank << ", " << expected.count << " taps";
   CHECK(table.find(expected_text.str()) != std::string::npos);
   CHECK(table.find("for pixels of 0.25 mm") != std::string::npos);
 }
 
-TEST_CASE("a tolerance takes the cheapest design for each material") {
+TEST_CASE("a tolerance takes no more taps and terms than it needs, for each material") {
   const TemporaryFolder folder;
   const MadeScene scene = make_scene(folder / "in.exr", "touching", 50, 30, 4);
-  const std::array profiles = {dermis::preset("skin").profile, dermis::Profile::burley({2, 1, 0.5})};
   const Words materials = {"--material", "1=skin", "--material", "2=burley:2/1/0.5"};
   std::array<std::vector<int>, 2> reads;
-  for (const double tolerance : {0.2, 0.02, 0.008}) {
+  for (const double tolerance : {0.2, 0.02, 0.004}) {
     std::ostringstream text;
     text << tolerance;
     INFO("tolerance " << tolerance);
     const json stats =
         stats_of(filter_arguments(scene, folder / "out.exr", with(materials, {"--tolerance", text.str()})));
     CHECK(stats["tolerance"] == tolerance);
+    CHECK(stats["quality"].is_null());
     CHECK(stats["method"] == "separable");
     for (std::size_t m = 0; m < 2; ++m) {
       INFO("material " << m + 1);
-      const json& material = stats["materials"][m];
-      CHECK(material["design"]["predicted_rel_l2"] <= tolerance);
-      const auto expected = cheapest_design(profiles[m], tolerance, material["pixel_mm"]);
-      REQUIRE(expected);
-      check_is(material["design"], *expected);
-      reads[m].push_back(reads_of(material["design"]));
+      const json& design = stats["materials"][m]["design"];
+      CHECK(design["predicted_rel_l2"] <= tolerance);
+      CHECK(design["taps"] <= design["most_taps"]);
+      reads[m].push_back(reads_of(design));
     }
   }
   for (const auto& of_material : reads) {
     CHECK(std::is_sorted(of_material.begin(), of_material.end()));
     CHECK(of_material.front() < of_material.back());
   }
-  // The wider profile with the sharper peak takes more.
-  CHECK(reads[0].back() < reads[1].back());
 }
 
-TEST_CASE("a design that a tolerance chose gives the same picture as when it is asked for") {
+TEST_CASE("a quality is a tolerance, and the default is final") {
+  const TemporaryFolder folder;
+  const MadeScene scene = make_scene(folder / "in.exr", "step", 50, 30, 8);
+  const auto call = [&](const std::string& name, const Words& more) {
+    return filter_arguments(scene, folder / name, with({"--material", "1=skin"}, more));
+  };
+  run_well(call("reference.exr", {"--quality", "reference"}));
+  run_well(call("exact.exr", {"--method", "exact"}));
+  CHECK(is_identical(folder / "reference.exr", folder / "exact.exr"));
+  struct Case {
+    std::string quality;
+    std::string tolerance;
+  };
+  double worse = 1;
+  for (const Case& c : {Case{"draft", "0.05"}, Case{"preview", "0.02"}, Case{"final", "0.006"}}) {
+    INFO(c.quality);
+    const json stats = stats_of(call("quality.exr", {"--quality", c.quality}));
+    CHECK(stats["quality"] == c.quality);
+    CHECK(stats["tolerance"] == std::stod(c.tolerance));
+    run_well(call("tolerance.exr", {"--tolerance", c.tolerance}));
+    CHECK(is_identical(folder / "quality.exr", folder / "tolerance.exr"));
+    const double error = relative_l2(folder / "quality.exr", folder / "reference.exr", "ViewLayer.sss");
+    CHECK(error < worse);
+    worse = error;
+  }
+  for (const Words& words : {Words{}, Words{"--taps", "auto"}, Words{"--rank", "auto", "--taps", "auto"}}) {
+    run_well(call("default.exr", words));
+    CHECK(is_identical(folder / "default.exr", folder / "quality.exr"));
+  }
+}
+
+TEST_CASE("a tolerance leaves alone what is asked for beside it") {
   const TemporaryFolder folder;
   const MadeScene scene = make_scene(folder / "in.exr", "step", 50, 30, 4);
-  const json stats =
-      stats_of(filter_arguments(scene, folder / "chosen.exr", {"--material", "1=skin", "--tolerance", "0.01"}));
+  const json stats = stats_of(filter_arguments(
+      scene, folder / "out.exr",
+      {"--material", "1=skin", "--tolerance", "0.2", "--rank", "3", "--placement", "importance", "--non-negative"}));
   const json& design = stats["materials"][0]["design"];
-  run_well(filter_arguments(scene, folder / "asked.exr",
-                            {"--material", "1=skin", "--model", design["model"], "--rank", design["rank"].dump(),
-                             "--taps", design["taps"].dump(), "--placement", design["placement"]}));
-  CHECK(is_identical(folder / "chosen.exr", folder / "asked.exr"));
-  run_well(filter_arguments(scene, folder / "loose.exr", {"--material", "1=skin", "--tolerance", "0.2"}));
-  CHECK_FALSE(is_identical(folder / "chosen.exr", folder / "loose.exr"));
+  CHECK(design["rank"] == 3);
+  CHECK(design["placement"] == "importance");
+  CHECK(design["non_negative"] == true);
+  CHECK(design["taps"] < design["most_taps"]);
 }
 
 TEST_CASE("a tolerance that no taps meet takes the exact method, and says so") {
@@ -321,14 +350,17 @@ TEST_CASE("the record in the result is a command that makes it again") {
        " --model guided --rank 1 --taps 9 --placement importance --guide 1.25"},
       {{"--model", "optimised", "--rank", "3", "--taps", "7", "--non-negative"},
        " --model optimised --rank 3 --taps 7 --placement optimised --non-negative"},
-      {{"--tolerance", "0.03"}, " --method separable --tolerance 0.03 --jitter"}};
+      {{"--tolerance", "0.03"}, " --method separable --tolerance 0.03 --jitter"},
+      {{}, " --method separable --quality final --jitter"},
+      {{"--quality", "draft", "--rank", "2"},
+       " --method separable --quality draft --model optimised --rank 2 --placement optimised --jitter"},
+      {{"--quality", "reference"}, " --method exact --lighting"}};
   for (const Case& c : cases) {
     INFO(c.recorded);
     run_well(filter_arguments(scene, folder / "out.exr", with({"--material", "1=skin"}, c.words)));
     const std::string record = record_of(folder / "out.exr");
     INFO(record);
     CHECK(record.find(c.recorded) != std::string::npos);
-    CHECK((record.find("--tolerance") == std::string::npos) != (record.find("--rank") == std::string::npos));
     std::istringstream stream(record);
     Words again;
     for (std::string word; stream >> word;) again.push_back(word);

@@ -1,0 +1,24 @@
+/// What became of the tiles of a frame, as a picture.
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "dermis/plan.hpp"
+
+namespace dermis::program {
+
+/// In words.
+std::string_view name_of(TileKind kind);
+
+/// A line per kind: its colour, how many tiles are of it, and their share.
+std::string legend_of(const TileMap& tiles);
+
+/// Draws every tile in the colour of its kind, over the light of the frame, packed scene-linear RGB, from dim where it
+/// is dark to full. Throws Error(output).
+void write_tile_map_png(const std::filesystem::path& path, int width, int height, const TileMap& tiles,
+                        std::span<const float> light);
+
+}  // namespace dermis::program

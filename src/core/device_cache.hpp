@@ -1,0 +1,38 @@
+// What plans for one device share: none of it changes once it is made.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "core/opencl.hpp"
+#include "core/recent.hpp"
+#include "dermis/device.hpp"
+#include "dermis/profile.hpp"
+#include "dermis/taps.hpp"
+
+namespace dermis {
+
+/// What taps are fitted to.
+struct FitKey {
+  Profile profile;
+  TapsDesign design;
+  bool operator==(const FitKey&) const = default;
+};
+
+struct DeviceCache {
+  /// By files and build options. A program holds a few MB of code; a caller who changes options, or what its frames
+  /// hold, comes by a handful of them.
+  Recent<std::string, cl::Program> programs{16, [](const cl::Program&) { return 1; }};
+  /// A usual ladder takes 0.6 MB, so a hundred fit.
+  Recent<FitKey, std::shared_ptr<const Taps>> taps{std::size_t{64} << 20,
+                                                   [](const auto& its) { return bytes_of(*its); }};
+  /// The designs with the ranks that were found for them.
+  Recent<FitKey, TapsDesign> designs{1024, [](const TapsDesign&) { return 1; }};
+
+  static std::size_t bytes_of(const Taps& taps);
+};
+
+/// That of a device and its copies.
+DeviceCache& cache_of(const Device& device);
+
+}  // namespace dermis

@@ -1,0 +1,95 @@
+#include "taps/tap_budget.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+namespace dermis {
+
+namespace {
+
+/// Rungs in a row that have the same count: that which the widest of them needs. Errors grow by a tenth or two from
+/// the first to the last, and to predict the error of every rung would take as long as all fits.
+constexpr int group = 4;
+
+/// Offsets for one radius as a start for another.
+std::vector<double> scaled(std::vector<double> offsets_px, double ratio) {
+  for (double& offset_px : offsets_px) offset_px *= ratio;
+  return offsets_px;
+}
+
+/// Many taps are where they were, but for the scale; a search for each rung would take a second.
+bool is_searched_at_every_rung(int rank, std::size_t pairs) {
+  constexpr std::size_t most_unknowns = 24;
+  return static_cast<std::size_t>(rank) * pairs <= most_unknowns;
+}
+
+}  // namespace
+
+std::vector<int> tap_counts(const TapsDesign& design) {
+  if (design.tolerance == 0) return {design.count};
+  constexpr std::array counts = {5, 7, 11, 17, 25, 33, 49, 65};
+  std::vector<int> result;
+  std::copy_if(counts.begin(), counts.end(), std::back_inserter(result),
+               [&](int count) { return count < design.count; });
+  result.push_back(design.count);
+  return result;
+}
+
+double worthwhile_rel_l2(const DesignedTaps& designed, double tolerance, double pixel_mm) {
+  constexpr double of_model = 1.25;
+  return std::max(tolerance, of_model * designed.model_rel_l2(pixel_mm));
+}
+
+double middle_radius_px(int rung) {
+  constexpr int rungs_per_octave = 1 << Taps::log2_rungs_per_octave;
+  const double middle = 1 + (rung % rungs_per_octave + 0.5) / rungs_per_octave;
+  return std::ldexp(Taps::min_radius_px * middle, rung / rungs_per_octave);
+}
+
+TapBudget::TapBudget(const Profile& profile, const TapsDesign& design) : design_(design) {
+  const DesignedTaps designed(profile, design);
+  for (const int count : tap_counts(design)) levels_.push_back(designed.with_count(count));
+}
+
+SizedTaps TapBudget::at(int rung) {
+  const int place = rung % group;
+  if (place == 0) {
+    ahead_.reset();
+    if (!at_last_level()) ahead_ = good_enough(rung + group - 1);
+  }
+  if (place == group - 1 && ahead_) return *std::exchange(ahead_, std::nullopt);
+  return fitted(rung, place == 0);
+}
+
+SizedTaps TapBudget::good_enough(int rung) {
+  const double pixel_mm = designed().radius_mm() / middle_radius_px(rung);
+  SizedTaps taps = fitted(rung, true);
+  double enough = design_.tolerance;
+  for (bool has_model = false; !at_last_level(); taps = fitted(rung, true)) {
+    const double error = designed().predicted_rel_l2(taps.placed, pixel_mm);
+    if (error > enough && !has_model) {
+      enough = worthwhile_rel_l2(designed(), enough, pixel_mm);
+      has_model = true;
+    }
+    if (error <= enough) break;
+    ++level_;
+  }
+  return taps;
+}
+
+SizedTaps TapBudget::fitted(int rung, bool look) {
+  const DesignedTaps& level = levels_[level_];
+  const auto pairs = static_cast<std::size_t>(level.count() / 2);
+  const double radius_px = middle_radius_px(rung);
+  look = look || is_searched_at_every_rung(design_.rank, pairs);
+  const Search search = near_px_.size() != pairs ? Search::everywhere : look ? Search::nearby : Search::nowhere;
+  SizedTaps taps =
+      level.at(level.radius_mm() / radius_px, Fetch::integer, search, scaled(near_px_, radius_px / near_radius_px_));
+  near_px_ = taps.placed.offsets_px;
+  near_radius_px_ = radius_px;
+  return taps;
+}
+
+}  // namespace dermis
