@@ -38,9 +38,9 @@ struct RunSizes {
 /// Buffers for one run at a time.
 struct RunMemory {
   RunSizes sizes;
-  cl::Buffer surface;     ///< material of each pixel
-  cl::Buffer cells;       ///< CellParams
-  cl::Buffer passes;      ///< CellPasses
+  cl::Buffer surface;  ///< material of each pixel
+  cl::Buffer cells;    ///< CellParams
+  cl::Buffer passes;   ///< CellPasses
   cl::Buffer windows;
   cl::Buffer between;   ///< if the window is the frame: light between the passes, or the geometry of the exact integral
   cl::Buffer segments;  ///< if the window is the frame: along y
