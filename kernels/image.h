@@ -40,6 +40,15 @@ SHARED vfloat read_half_lanes(global const uchar* at, int pixel_stride) {
 #undef READ_LANE
   return JOIN(vload_half, V)(0, (const half*)&bits);
 }
+
+// V floats that are not side by side.
+SHARED vfloat read_float_lanes(global const uchar* at, int pixel_stride) {
+  vfloat value;
+#define READ_LANE(lane) LANE(value, lane) = *(global const float*)(at + (0x##lane) * (Bytes)pixel_stride);
+  EACH_LANE(READ_LANE)
+#undef READ_LANE
+  return value;
+}
 #endif
 
 // One channel of a row.
@@ -79,6 +88,7 @@ FORCED_INLINE vfloat read_values(Row row, int x) {
       return JOIN(convert_float, V)(*(global const unaligned_bytes*)at);
     }
     if (row.format == FORMAT_F16) return read_half_lanes(at, row.pixel_stride);
+    if (row.format == FORMAT_F32) return read_float_lanes(at, row.pixel_stride);
   }
 #endif
   return read_scattered(row, x);
