@@ -111,7 +111,7 @@ static inline RgbRow rgb_row_of(global const uchar* image, const struct ImagePar
 
 // Fetches into the caches what pixel x of a row needs.
 FORCED_INLINE void fetch_ahead(global const uchar* row, int pixel_stride, int x) {
-#if __has_builtin(__builtin_prefetch)
+#if defined(__OPTIMIZE__) && __has_builtin(__builtin_prefetch)
   __builtin_prefetch(row + x * (Bytes)pixel_stride);
 #endif
 }

@@ -569,7 +569,7 @@ kernel void scatter(struct FrameParams f, global const struct MaterialParams* ma
   // There are more work-items than workers, as a device may give several to one thread; the first ones do the work.
   global uchar* own_memory = 0;
   int bad = 0;
-  while (counters[COUNTER_NEXT_TILE] < f.tiles_x * f.tiles_y) {
+  while (atomic_add(counters + COUNTER_NEXT_TILE, 0) < f.tiles_x * f.tiles_y) {
     if (!own_memory) {
       const int worker = atomic_inc(counters + COUNTER_WORKERS);
       if (worker >= workers) return;

@@ -6,7 +6,11 @@
 #pragma OPENCL FP_CONTRACT OFF
 
 // What depends on an argument that is known where it is called.
+#ifdef __OPTIMIZE__
 #define FORCED_INLINE static inline __attribute__((always_inline))
+#else
+#define FORCED_INLINE static inline  // checkers of unoptimised kernels trip over what inlining leaves behind
+#endif
 
 // What is called from several places: code that is there once is built sooner.
 #define SHARED static __attribute__((noinline))

@@ -1,5 +1,6 @@
 #include "core/program.hpp"
 
+#include <mutex>
 #include <set>
 #include <sstream>
 
@@ -29,6 +30,9 @@ void append_file(const std::string& name, std::set<std::string>& seen, std::stri
 
 cl::Program build(const cl::Context& context, const cl::Device& device, const std::string& source,
                   const std::string& options) {
+  // One at a time: not every device's compiler stands several threads, and PoCL's makes them wait for each other.
+  static std::mutex one_at_a_time;
+  const std::lock_guard lock(one_at_a_time);
   cl::Program program(context, source);
   try {
     program.build({device}, options.c_str());
