@@ -234,13 +234,14 @@ SHARED void across_uniform(const Windows* w, const Tables* tables, const Sight* 
 // The horizontal pass over one row.
 static inline void scatter_row(const Windows* w, const struct FrameParams* f, const Tables* tables, const Sight* sight,
                                int skips, int y) {
+  const int cells = (w->x_end - w->x_begin + CELL - 1) / CELL;
+  // Even if the light of this row is uniform: that of the next may not be.
+  if (y % CELL == 0 || y == w->y_begin) {
+    for (int i = 0; i < cells; ++i) w->choices[i] = choice_of(f, tables, w->x_begin / CELL + i, y / CELL, 0);
+  }
   if (skips && sight->last_varied != y) {
     across_uniform(w, tables, sight, y);
     return;
-  }
-  const int cells = (w->x_end - w->x_begin + CELL - 1) / CELL;
-  if (y % CELL == 0 || y == w->y_begin) {
-    for (int i = 0; i < cells; ++i) w->choices[i] = choice_of(f, tables, w->x_begin / CELL + i, y / CELL, 0);
   }
   int end = 0;
   for (int i = 0; i < cells; i = end) {
