@@ -67,7 +67,8 @@ TapWeight follow(const std::array<double, 3>& weights, const std::array<double, 
     if (densities[c] == 0) continue;
     double length_mm = weights[c] / densities[c];
     if (normalised) {
-      if (!(length_mm < longest * its_length_mm)) length_mm = 0;
+      // Both may be nothing but rounding, of either sign.
+      if (!(length_mm >= 0 && length_mm < longest * its_length_mm)) length_mm = 0;
     } else {
       length_mm = std::clamp(length_mm, 0.0, longest_of_correction * its_length_mm);
       const double rest = weights[c] - length_mm * densities[c];
