@@ -116,6 +116,12 @@ FORCED_INLINE void fetch_ahead(global const uchar* row, int pixel_stride, int x)
 #endif
 }
 
+FORCED_INLINE void fetch_rgb_ahead(const RgbRow* row, int x) {
+  fetch_ahead(row->r.at, row->r.pixel_stride, x);
+  fetch_ahead(row->g.at, row->g.pixel_stride, x);
+  fetch_ahead(row->b.at, row->b.pixel_stride, x);
+}
+
 SHARED vrgb read_any_rgb(const RgbRow* row, int x) {
   const vrgb value = {read_values(row->r, x), read_values(row->g, x), read_values(row->b, x)};
   return value;

@@ -12,6 +12,9 @@ typedef long long Bytes;
 // result depends neither on the vector width nor on the tiles.
 #define CELL 16
 
+// Rows that the vertical pass of a tile computes as soon as the horizontal one has made what it reads of them.
+#define BAND 32
+
 // Octaves of r^4 in a table of the separable passes.
 #define OCTAVES 32
 
@@ -28,14 +31,15 @@ typedef long long Bytes;
 #define NARROW_BIT 0x80
 #define MAX_MATERIALS 127
 
-// Counters of a run, the last four of pixels.
+// Counters of a run, the last five of pixels.
 #define COUNTER_NEXT_TILE 0
 #define COUNTER_WORKERS 1
 #define COUNTER_BAD 2
 #define COUNTER_SCATTERED 3
 #define COUNTER_NARROW 4
 #define COUNTER_FLAT 5
-#define RUN_COUNTERS 6
+#define COUNTER_SMOOTH 6
+#define RUN_COUNTERS 7
 
 // What became of a tile.
 #define TILE_WITHOUT_MATERIAL 0
@@ -43,8 +47,9 @@ typedef long long Bytes;
 #define TILE_UNLIT 2
 #define TILE_UNIFORM 3
 #define TILE_FLAT 4  // all cells are flat: no depth terms
-#define TILE_CURVED 5
-#define TILE_KINDS 6
+#define TILE_SMOOTH 5  // all cells are flat or smooth: no depth of taps
+#define TILE_CURVED 6
+#define TILE_KINDS 7
 
 // Directions of the rotation of tap axes.
 #define ROTATIONS 256
@@ -94,7 +99,7 @@ struct CellParams {
   float along_x_low, along_x_high;  // change of depth to the next pixel of the same material
   float along_y_low, along_y_high;
   float finest_x, finest_y;  // largest footprint of a pixel that scatters, px per mm, times its width factor
-  float radius_mm;           // largest one of the materials that scatter
+  unsigned int scattering[4];  // a bit for each material that some pixel scatters by
   int material;              // byte of all pixels of the plane of materials; 0 if they differ
   int scattered;             // pixels
   int narrow;
@@ -102,9 +107,15 @@ struct CellParams {
 
 // What one pass does in a cell.
 struct CellPass {
-  float footprint;  // that its rungs are chosen by, px per mm: negative if the cell is flat, 0 if nothing scatters
-  int material;     // 1 + the index of the only one that taps fall on, all in the frame; 0 if there is more than that
+  float footprint;  // that its rungs are chosen by, px per mm; 0 if nothing scatters
+  int shape;
+  int material;  // 1 + the index of the only one that taps fall on, all in the frame; 0 if there is more than that
 };
+
+// Shapes of a cell in a pass.
+#define SHAPE_FLAT 0
+#define SHAPE_SMOOTH 1
+#define SHAPE_CURVED 2
 
 struct CellPasses {
   struct CellPass x, y;
@@ -113,15 +124,16 @@ struct CellPasses {
 // How the pixels of a cell are scattered in one pass.
 struct ChoiceParams {
   int way;
-  int material;     // index
-  int rung;         // index
-  int flat_weight;  // index
+  int material;  // index
+  int rung;      // index
+  int weight;    // index of the first flat or smooth one
 };
 
-// Taps fall on anything, or all of them on the material of the cell, which is flat or curved.
-#define WAY_GENERAL 0
-#define WAY_FLAT 1
-#define WAY_CURVED 2
+// All taps fall on the material of the cell, which has that shape, or they fall on anything.
+#define WAY_FLAT SHAPE_FLAT
+#define WAY_SMOOTH SHAPE_SMOOTH
+#define WAY_CURVED SHAPE_CURVED
+#define WAY_GENERAL 3
 
 // Part of a frame in memory: see window.h.
 struct WindowParams {
@@ -179,6 +191,7 @@ struct RungParams {
   int rotated_pairs;  // the first ones
   int first_weight;
   int first_flat_weight;  // of the first part
+  int first_smooth_weight;
   int last_offset_px;
 };
 
@@ -191,6 +204,13 @@ struct WeightParams {
 // The same on a flat cell.
 struct FlatWeight {
   float rgb[3];
+};
+
+// The same on a smooth cell: q and k of taps.hpp times the last two are added, k with the sign of the offset.
+struct SmoothWeight {
+  float rgb[3];
+  float stretch[3];
+  float skew[3];
 };
 
 // One rotation of the axes, times 4096: the offset (o, 0) of the horizontal pass becomes (o * cosine, o * sine_x), the

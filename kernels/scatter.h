@@ -2,6 +2,7 @@
 #include "load.h"
 #include "octaves.h"
 #include "rotation.h"
+#include "rung.h"
 #include "tangent.h"
 
 #ifndef TERMS
@@ -16,6 +17,7 @@ typedef struct {
   global const int* offsets;
   global const struct WeightParams* weights;
   global const struct FlatWeight* flat_weights;
+  global const struct SmoothWeight* smooth_weights;
   global const struct RotationParams* rotations;
   global const struct CellPasses* passes;
   uint seed;
@@ -144,6 +146,126 @@ FORCED_INLINE void scatter_flat(vrgb* result, const struct FrameParams* f, const
       const vrgb missing = {terms[t].sum[0] - sums.weight[t].r, terms[t].sum[1] - sums.weight[t].g,
                             terms[t].sum[2] - sums.weight[t].b};
       result[t] = fused(missing, own[t], sums.light[t]);
+    }
+  }
+}
+
+// The sums of a smooth cell that its weights are made of.
+typedef struct {
+  vrgb rgb, stretch, skew;
+} SmoothSums;
+
+FORCED_INLINE vrgb smooth_total(const SmoothSums* sums, Bend bend) {
+  return fused(same_rgb(bend.skew), sums->skew, fused(same_rgb(bend.stretch), sums->stretch, sums->rgb));
+}
+
+FORCED_INLINE vrgb add_scaled(global const float* factor, vrgb a, vrgb b) {
+  const vrgb result = {fma((vfloat)(factor[0]), a.r, b.r), fma((vfloat)(factor[1]), a.g, b.g),
+                       fma((vfloat)(factor[2]), a.b, b.b)};
+  return result;
+}
+
+FORCED_INLINE vrgb difference_rgb(vrgb a, vrgb b) {
+  const vrgb result = {a.r - b.r, a.g - b.g, a.b - b.b};
+  return result;
+}
+
+FORCED_INLINE void add_smooth(SmoothSums* sums, global const struct SmoothWeight* weight, vrgb both, vrgb change) {
+  sums->rgb = add_scaled(weight->rgb, both, sums->rgb);
+  sums->stretch = add_scaled(weight->stretch, both, sums->stretch);
+  sums->skew = add_scaled(weight->skew, change, sums->skew);
+}
+
+FORCED_INLINE SmoothSums smooth_centre(global const struct SmoothWeight* weight, vrgb own) {
+  const SmoothSums sums = {scaled(weight->rgb, own), scaled(weight->stretch, own), same_rgb((vfloat)(0.0f))};
+  return sums;
+}
+
+// A smooth cell where every tap falls on the material.
+FORCED_INLINE void scatter_smooth_clean(vrgb* result, const struct FrameParams* f, const Pass* s,
+                                        global const struct RungParams* rung, global const int* offsets,
+                                        global const struct SmoothWeight* weights, int x, int y) {
+  const size_t at = pixel_at(s->from, x, y);
+  const Bend bend = bend_at(f, s->from, rung, x, y, s->axis, 1);
+  SmoothSums sums[TERMS];
+#pragma unroll
+  for (int t = 0; t < TERMS; ++t) sums[t] = smooth_centre(weights + t, load_term(s, t, at));
+#pragma nounroll
+  for (int i = 0; i < rung->pairs; ++i) {
+    const size_t after = tap_at(s, x, y, offsets[i]);
+    const size_t before = tap_at(s, x, y, -offsets[i]);
+    weights += TERMS;
+    vrgb both, change;
+#pragma unroll
+    for (int t = 0; t < TERMS; ++t) {
+      if (t == 0 || s->axis == 1) {
+        const vrgb a = load_term(s, t, after);
+        const vrgb b = load_term(s, t, before);
+        both = sum_rgb(a, b);
+        change = difference_rgb(a, b);
+      }
+      add_smooth(sums + t, weights + t, both, change);
+    }
+  }
+#pragma unroll
+  for (int t = 0; t < TERMS; ++t) result[t] = smooth_total(sums + t, bend);
+}
+
+// A smooth cell where some taps fall on something else. With none it gives the same bits as scatter_smooth_clean.
+FORCED_INLINE void scatter_smooth(vrgb* result, const struct FrameParams* f, const Pass* s, const Tables* tables,
+                                  global const struct RungParams* rung, global const struct TermParams* terms,
+                                  vint material, int x, int y) {
+  const size_t at = pixel_at(s->from, x, y);
+  global const int* offsets = tables->offsets + rung->first_offset;
+  global const struct SmoothWeight* weights = tables->smooth_weights + rung->first_smooth_weight;
+  const Bend bend = bend_at(f, s->from, rung, x, y, s->axis, 0);
+  vrgb own[TERMS];
+  SmoothSums light[TERMS];
+  SmoothSums weight[TERMS];
+#pragma unroll
+  for (int t = 0; t < TERMS; ++t) {
+    own[t] = load_term(s, t, at);
+    light[t] = smooth_centre(weights + t, own[t]);
+    weight[t] = smooth_centre(weights + t, same_rgb((vfloat)(1.0f)));
+  }
+#pragma nounroll
+  for (int i = 0; i < rung->pairs; ++i) {
+    weights += TERMS;
+    vrgb both[TERMS], change[TERMS];
+    vfloat there = (vfloat)(0.0f);
+    vfloat lopsided = (vfloat)(0.0f);
+    for (int t = 0; t < TERMS; ++t) both[t] = change[t] = same_rgb((vfloat)(0.0f));
+#pragma nounroll
+    for (int side = -1; side <= 1; side += 2) {
+      const int offset = side * offsets[i];
+      if (!in_frame(f, s, x, y, offset)) continue;
+      const size_t tap = tap_at(s, x, y, offset);
+      const vint same = AS_MASK((load_bytes(s->from->material + tap) & MATERIAL_MASK) == material);
+      there += keep(same, (vfloat)(1.0f));
+      lopsided += keep(same, (vfloat)(side));
+#pragma unroll
+      for (int t = 0; t < TERMS; ++t) {
+        const vrgb its = keep_rgb(same, load_term(s, t, tap));
+        both[t] = sum_rgb(both[t], its);
+        change[t] = fused(same_rgb((vfloat)(side)), its, change[t]);
+      }
+    }
+#pragma unroll
+    for (int t = 0; t < TERMS; ++t) {
+      add_smooth(light + t, weights + t, both[t], change[t]);
+      add_smooth(weight + t, weights + t, same_rgb(there), same_rgb(lopsided));
+    }
+  }
+#pragma unroll
+  for (int t = 0; t < TERMS; ++t) {
+    const vrgb sum = smooth_total(light + t, bend);
+    vrgb all = smooth_total(weight + t, bend);
+    if (!terms[t].normalised) {
+      // The weight of the centre makes the sum of all that of the term; what is missing counts as the centre.
+      const vrgb missing = {terms[t].sum[0] - all.r, terms[t].sum[1] - all.g, terms[t].sum[2] - all.b};
+      result[t] = fused(missing, own[t], sum);
+    } else {
+      result[t] = finish_term(terms + t, sum, all, own[t]);
     }
   }
 }
@@ -295,20 +417,6 @@ FORCED_INLINE void scatter_curved(vrgb* result, const struct FrameParams* f, con
   for (int t = 0; t < TERMS; ++t) result[t] = finish_term(terms + t, sums.light[t], sums.weight[t], own[t]);
 }
 
-// Which rung, and which part of it.
-typedef struct {
-  int rung;  // -1 if the kernel radius is below half a pixel
-  int part;
-} Step;
-
-// Steps of 1/16 octave in the bits of a float; on a flat cell the nearest of the parts of those.
-static inline Step step_of(float radius_px, int is_flat, int rungs) {
-  const int bits = as_int(radius_px) - as_int(0.5f) + (is_flat ? 1 << 15 : 0);
-  const int rung = min(bits >> 19, rungs - 1);
-  const Step step = {radius_px >= 0.5f ? rung : -1, min((bits - (rung << 19)) >> 16, RUNG_PARTS - 1)};
-  return step;
-}
-
 static inline struct CellPass cell_pass(const struct FrameParams* f, const Tables* tables, int cell_x, int cell_y,
                                         int axis) {
   global const struct CellPasses* passes = tables->passes + (size_t)cell_y * f->cells_x + cell_x;
@@ -333,7 +441,7 @@ FORCED_INLINE void scatter_pixels(vrgb* result, const struct FrameParams* f, con
                                   int y) {
   const size_t at = pixel_at(s->from, x, y);
   const vint m = load_bytes(s->from->material + at);
-  const float footprint = cell_pass(f, tables, x / CELL, y / CELL, s->axis).footprint;
+  const struct CellPass pass = cell_pass(f, tables, x / CELL, y / CELL, s->axis);
   for (int t = 0; t < TERMS; ++t) result[t] = same_rgb((vfloat)(0.0f));
   for (int i = 0; i < MATERIALS; ++i) {
     const vint material = (vint)(i + 1);
@@ -342,13 +450,15 @@ FORCED_INLINE void scatter_pixels(vrgb* result, const struct FrameParams* f, con
     global const struct MaterialParams* its = tables->materials + i;
     global const struct TermParams* terms = tables->terms + its->first_term;
     const vint mine = AS_MASK(m == material);
-    const Step step = step_of(fabs(footprint) * its->radius_mm, footprint < 0.0f, its->rungs);
+    const Step step = step_of(its, pass.footprint, pass.shape);
     vrgb scattered[TERMS];
     const int has_taps = step.rung >= 0 && any_bit(mine);
     if (has_taps) {
       global const struct RungParams* rung = tables->rungs + its->first_rung + step.rung;
-      if (footprint > 0.0f) {
+      if (pass.shape == SHAPE_CURVED) {
         scatter_curved(scattered, f, s, tables, rung, terms, material, x, y, 0);
+      } else if (pass.shape == SHAPE_SMOOTH) {
+        scatter_smooth(scattered, f, s, tables, rung, terms, material, x, y);
       } else {
         scatter_flat(scattered, f, s, tables, rung, tables->flat_weights + first_flat_weight(rung, step.part), terms,
                      material, x, y);

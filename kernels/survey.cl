@@ -1,7 +1,11 @@
 // survey: which material each pixel has, and what the surface of each cell is like. One work-item has a run of cells.
 #include "image.h"
+#include "rung.h"
 #include "shape.h"
 #include "vector.h"
+
+// How many cells before their turn the images are fetched.
+#define CELLS_AHEAD 6
 
 // One row of a cell.
 typedef struct {
@@ -69,6 +73,19 @@ static inline PixelRow read_row(const struct FrameParams* f, const SurveyInputs*
   return row;
 }
 
+// Processors do not see sixteen rows coming.
+static inline void fetch_row_ahead(const struct FrameParams* f, const SurveyInputs* in, int x, int y) {
+  const int later_x = x + CELLS_AHEAD * CELL;
+#if HAS_MATERIAL
+  const Row ids = row_of(in->material, &in->material_at, f->width, y, 0);
+  fetch_ahead(ids.at, ids.pixel_stride, later_x);
+#endif
+#if HAS_DEPTH
+  const Row depth = row_of(in->depth, &in->depth_at, f->width, y, 0);
+  fetch_ahead(depth.at, depth.pixel_stride, later_x);
+#endif
+}
+
 // fmin and fmax of numbers, without their care for NaN.
 FORCED_INLINE vfloat lower(vfloat a, vfloat b) { return select(b, a, AS_MASK(a < b)); }
 FORCED_INLINE vfloat higher(vfloat a, vfloat b) { return select(b, a, AS_MASK(a > b)); }
@@ -103,8 +120,10 @@ typedef struct {
   Range depth, along_x, along_y;
   vfloat size_x, size_y;  // smallest ones of pixels that scatter, mm
   vint scattered, narrow;
-  float radius_mm;
+  uint scattering[4];  // as in CellParams
 } Seen;
+
+static inline void see_material(Seen* seen, int index) { seen->scattering[index / 32] |= 1u << (index % 32); }
 
 // Without the last lane, whose next pixel is in another cell.
 static inline Range without_last(Range a) {
@@ -113,8 +132,9 @@ static inline Range without_last(Range a) {
 }
 
 // A cell of one material without gaps. Returns whether none of it is narrow; if some is, it has seen nothing.
-static inline int see_whole(Seen* seen, const struct FrameParams* f, global const struct MaterialParams* its,
-                            const PixelRow* rows, int height) {
+static inline int see_whole(Seen* seen, const struct FrameParams* f, global const struct MaterialParams* materials,
+                            int index, const PixelRow* rows, int height) {
+  global const struct MaterialParams* its = materials + index;
   for (int i = 0; i < height; ++i) {
     seen->depth.low = lower(seen->depth.low, rows[i].depth);
     seen->depth.high = higher(seen->depth.high, rows[i].depth);
@@ -127,7 +147,7 @@ static inline int see_whole(Seen* seen, const struct FrameParams* f, global cons
   seen->size_x = fma(seen->depth.low, (vfloat)(f->slope_x), (vfloat)(f->mm_per_px_x));
   seen->size_y = fma(seen->depth.low, (vfloat)(f->slope_y), (vfloat)(f->mm_per_px_y));
   seen->scattered = (vint)(-height);
-  seen->radius_mm = its->radius_mm;
+  see_material(seen, index);
 #if HAS_DEPTH && !JITTER
   for (int i = 0; i < height; ++i) {
     const vfloat z = rows[i].depth;
@@ -169,7 +189,7 @@ static inline void see_mixed(Seen* seen, const struct FrameParams* f, global con
         rows[row].material |= is_narrow & NARROW_BIT;
         seen->narrow += is_narrow;
         seen->scattered += scatters;
-        if (any_bit(scatters)) seen->radius_mm = fmax(seen->radius_mm, its->radius_mm);
+        if (any_bit(scatters)) see_material(seen, i);
         seen->size_x = lower(seen->size_x, select(nothing, PIXEL_WIDTH ? size_x_mm / widest : size_x_mm, scatters));
         seen->size_y = lower(seen->size_y, select(nothing, PIXEL_WIDTH ? size_y_mm / widest : size_y_mm, scatters));
       }
@@ -189,19 +209,20 @@ static inline void survey_cell(const struct FrameParams* f, const SurveyInputs* 
                                global const struct MaterialParams* materials, int cell_x, int cell_y,
                                global uchar* surface, global struct CellParams* cell) {
   const Range nothing = {(vfloat)(INFINITY), (vfloat)(-INFINITY)};
-  Seen seen = {nothing, nothing, nothing, nothing.low, nothing.low, (vint)(0), (vint)(0), 0.0f};
+  Seen seen = {nothing, nothing, nothing, nothing.low, nothing.low, (vint)(0), (vint)(0), {0, 0, 0, 0}};
   const int x = cell_x * CELL;
   const int y = cell_y * CELL;
   const int height = min(CELL, f->height - y);
   PixelRow rows[CELL];
   vint others = (vint)(0);
   for (int i = 0; i < height; ++i) {
+    fetch_row_ahead(f, in, x, y + i);
     rows[i] = read_row(f, in, materials, x, y + i);
     others |= rows[i].material ^ (vint)(rows[0].material.s0);
   }
   const int material = any_bit(others) ? 0 : rows[0].material.s0;
   cell->material = material;
-  if (PIXEL_WIDTH || material == 0 || !see_whole(&seen, f, materials + material - 1, rows, height)) {
+  if (PIXEL_WIDTH || material == 0 || !see_whole(&seen, f, materials, material - 1, rows, height)) {
     seen.depth = nothing;
     see_mixed(&seen, f, materials, rows, height);
     if (any_bit(seen.narrow)) cell->material = 0;
@@ -217,7 +238,7 @@ static inline void survey_cell(const struct FrameParams* f, const SurveyInputs* 
   const int any_scattered = count_lanes(seen.scattered);
   cell->finest_x = any_scattered > 0 ? 1.0f / lowest(seen.size_x) : 0.0f;
   cell->finest_y = any_scattered > 0 ? 1.0f / lowest(seen.size_y) : 0.0f;
-  cell->radius_mm = seen.radius_mm;
+  for (int i = 0; i < 4; ++i) cell->scattering[i] = seen.scattering[i];
   cell->scattered = any_scattered;
   cell->narrow = count_lanes(seen.narrow);
 }
@@ -242,9 +263,12 @@ kernel void survey(struct FrameParams f, int cells_per_item, global const struct
   }
 }
 
-// Taps.flatness in taps.hpp.
+// Of Taps in taps.hpp.
 #ifndef FLATNESS
 #error "FLATNESS"
+#endif
+#ifndef SMOOTHNESS
+#error "SMOOTHNESS"
 #endif
 
 typedef struct {
@@ -260,82 +284,137 @@ static inline void join(Interval* a, float low, float high) {
 static inline float middle(Interval a) { return a.low <= a.high ? 0.5f * (a.low + a.high) : 0.0f; }
 static inline float half_range(Interval a) { return a.low <= a.high ? 0.5f * (a.high - a.low) : 0.0f; }
 
-// See Taps in taps.hpp.
-static inline struct CellPass pass_over(const struct FrameParams* f, global const struct CellParams* cells, int cell_x,
-                                        int cell_y, int axis) {
-  global const struct CellParams* own = cells + cell_y * f->cells_x + cell_x;
-  struct CellPass pass = {0.0f, 0};
-  if (own->scattered == 0) return pass;
-  const float finest = axis == 0 ? own->finest_x : own->finest_y;
-  const int size_px = axis == 0 ? f->width : f->height;
-  const int cell = axis == 0 ? cell_x : cell_y;
-  const int reach_px = (int)fmin(ceil(own->radius_mm * finest), (float)size_px);
-  const int first = max(cell * CELL - reach_px, 0) / CELL;
-  const int last = min(cell * CELL + CELL - 1 + reach_px, size_px - 1) / CELL;
-  Interval depth = {INFINITY, -INFINITY};
-  Interval along = depth;  // the pass
-  Interval across = depth;
-  const int step = axis == 0 ? 1 : f->cells_x;
-  // The footprint of a rung may be a 256th larger than that of the cell.
-  const int farthest_px = reach_px + reach_px / 256 + 1;
-  const int farthest_first = cell * CELL - farthest_px;
-  const int farthest_last = cell * CELL + CELL - 1 + farthest_px;
-  pass.material = own->material;
-  if (farthest_first < 0 || farthest_last >= size_px) {
-    pass.material = 0;
-  } else {
-    for (int i = farthest_first / CELL; i <= farthest_last / CELL; ++i) {
-      if (own[(i - cell) * step].material != own->material) pass.material = 0;
-    }
-  }
-#if PIXEL_WIDTH || JITTER
-  pass.footprint = finest;
-#elif !HAS_DEPTH
-  pass.footprint = -finest;
-#else
-  for (int i = first; i <= last; ++i) {
-    global const struct CellParams* its = own + (i - cell) * step;
-    join(&depth, its->depth_low, its->depth_high);
-    join(&along, axis == 0 ? its->along_x_low : its->along_y_low, axis == 0 ? its->along_x_high : its->along_y_high);
-    join(&across, axis == 0 ? its->along_y_low : its->along_x_low, axis == 0 ? its->along_y_high : its->along_x_high);
-  }
-  const int along_px = min((last + 1) * CELL, size_px) - first * CELL;
-  const int across_px = axis == 0 ? min(CELL, f->height - cell_y * CELL) : min(CELL, f->width - cell_x * CELL);
+// Depths, and their changes to the next pixel along a pass and across it.
+typedef struct {
+  Interval depth, along, across;
+} Shape;
+
+static inline void join_cell(Shape* shape, global const struct CellParams* its, int axis) {
+  join(&shape->depth, its->depth_low, its->depth_high);
+  join(&shape->along, axis == 0 ? its->along_x_low : its->along_y_low,
+       axis == 0 ? its->along_x_high : its->along_y_high);
+  join(&shape->across, axis == 0 ? its->along_y_low : its->along_x_low,
+       axis == 0 ? its->along_y_high : its->along_x_high);
+}
+
+// How the camera sees a cell along a pass.
+typedef struct {
+  float ray_along, ray_across;  // change of position with depth along the ray through the middle
+  float slope, mm_per_px;       // along the pass
+} CellView;
+
+static inline CellView view_of(const struct FrameParams* f, int cell_x, int cell_y, int axis) {
   const float ray_x = f->slope_x * (cell_x * CELL + 0.5f * CELL - f->center_x);
   const float ray_y = f->slope_y * (cell_y * CELL + 0.5f * CELL - f->center_y);
-  const float ray_along = axis == 0 ? ray_x : ray_y;
-  const float ray_across = axis == 0 ? ray_y : ray_x;
-  const float slope = axis == 0 ? f->slope_x : f->slope_y;
-  const float g = middle(along);
-  const float dg = half_range(along);
-  const float tangent = (axis == 0 ? f->mm_per_px_x : f->mm_per_px_y) + slope * middle(depth) + ray_along * g;
-  const float change = slope * half_range(depth) + fabs(ray_along) * dg;
-  const float length2 = tangent * tangent + (ray_across * ray_across + 1.0f) * g * g;
-  const float change2 = change * change + (ray_across * ray_across + 1.0f) * dg * dg;
-  const float slopes = along_px * (fabs(g) + dg) + across_px * (fabs(middle(across)) + half_range(across));
-  const float length = sqrt(length2);
-  const int is_flat = change2 <= FLATNESS * FLATNESS * length2 && 2.0f * half_range(depth) <= slopes + length;
-  pass.footprint = is_flat ? -1.0f / length : finest;
+  const CellView view = {axis == 0 ? ray_x : ray_y, axis == 0 ? ray_y : ray_x, axis == 0 ? f->slope_x : f->slope_y,
+                         axis == 0 ? f->mm_per_px_x : f->mm_per_px_y};
+  return view;
+}
+
+// |T|^2 in the middle of a shape.
+static inline float squared_tangent(CellView view, const Shape* shape) {
+  const float g = middle(shape->along);
+  const float along = view.mm_per_px + view.slope * middle(shape->depth) + view.ray_along * g;
+  return along * along + (view.ray_across * view.ray_across + 1.0f) * g * g;
+}
+
+static inline int shape_of(const struct FrameParams* f, CellView view, const Shape* shape, int along_px,
+                           int across_px) {
+  const float g = middle(shape->along);
+  const float dg = half_range(shape->along);
+  const float change = view.slope * half_range(shape->depth) + fabs(view.ray_along) * dg;
+  const float length2 = squared_tangent(view, shape);
+  const float change2 = change * change + (view.ray_across * view.ray_across + 1.0f) * dg * dg;
+  const float slopes =
+      along_px * (fabs(g) + dg) + across_px * (fabs(middle(shape->across)) + half_range(shape->across));
+  if (!(2.0f * half_range(shape->depth) <= slopes + sqrt(length2))) return SHAPE_CURVED;
+  if (change2 <= FLATNESS * FLATNESS * length2) return SHAPE_FLAT;
+  return change2 <= SMOOTHNESS * SMOOTHNESS * length2 ? SHAPE_SMOOTH : SHAPE_CURVED;
+}
+
+// The farthest tap of the materials that a cell scatters by, px.
+static inline int farthest_tap_of(global const struct CellParams* cell, global const struct MaterialParams* materials,
+                                  global const struct RungParams* rungs, float footprint, int shape) {
+  int farthest = 0;
+  for (int m = 0; m < MATERIALS; ++m) {
+    if (!(cell->scattering[m / 32] >> (m % 32) & 1)) continue;
+    farthest = max(farthest, last_offset_of(materials + m, rungs, footprint, shape));
+  }
+  return farthest;
+}
+
+// 1 + the index of the material of all pixels within reach along the pass, or 0: `cell` is the place along the pass.
+static inline int material_within(global const struct CellParams* own, int cell, int step, int size_px, int reach_px) {
+  const int first_px = cell * CELL - reach_px;
+  const int last_px = cell * CELL + CELL - 1 + reach_px;
+  if (first_px < 0 || last_px >= size_px) return 0;
+  for (int i = first_px / CELL; i <= last_px / CELL; ++i) {
+    if (own[(i - cell) * step].material != own->material) return 0;
+  }
+  return own->material;
+}
+
+// See Taps in taps.hpp.
+static inline struct CellPass pass_over(const struct FrameParams* f, global const struct MaterialParams* materials,
+                                        global const struct RungParams* rungs, global const struct CellParams* cells,
+                                        int cell_x, int cell_y, int axis) {
+  global const struct CellParams* own = cells + cell_y * f->cells_x + cell_x;
+  struct CellPass pass = {0.0f, SHAPE_CURVED, 0};
+  if (own->scattered == 0) return pass;
+  const int size_px = axis == 0 ? f->width : f->height;
+  const int cell = axis == 0 ? cell_x : cell_y;
+  const int step = axis == 0 ? 1 : f->cells_x;
+  pass.footprint = axis == 0 ? own->finest_x : own->finest_y;
+#if !HAS_DEPTH && !PIXEL_WIDTH && !JITTER
+  pass.shape = SHAPE_FLAT;
+#elif !PIXEL_WIDTH && !JITTER
+  // Footprints of flat and smooth cells may be a little larger.
+  const int farthest_px = farthest_tap_of(own, materials, rungs, pass.footprint, SHAPE_CURVED);
+  const int reach_px = min(farthest_px + farthest_px / 8, size_px);
+  const int first = max(cell * CELL - reach_px, 0) / CELL;
+  const int last = min(cell * CELL + CELL - 1 + reach_px, size_px - 1) / CELL;
+  const Interval nothing = {INFINITY, -INFINITY};
+  Shape within_reach = {nothing, nothing, nothing};
+  for (int i = first; i <= last; ++i) join_cell(&within_reach, own + (i - cell) * step, axis);
+  const int along_px = min((last + 1) * CELL, size_px) - first * CELL;
+  const int across_px = axis == 0 ? min(CELL, f->height - cell_y * CELL) : min(CELL, f->width - cell_x * CELL);
+  const CellView view = view_of(f, cell_x, cell_y, axis);
+  pass.shape = shape_of(f, view, &within_reach, along_px, across_px);
+  if (pass.shape == SHAPE_FLAT) {
+    pass.footprint = 1.0f / sqrt(squared_tangent(view, &within_reach));
+  } else if (pass.shape == SHAPE_SMOOTH) {
+    Shape within_cell = {nothing, nothing, nothing};
+    join_cell(&within_cell, own, axis);
+    pass.footprint = 1.0f / sqrt(squared_tangent(view, &within_cell));
+  }
 #endif
+  // A smooth cell looks at the next pixel even without taps.
+  const int taps_px = max(farthest_tap_of(own, materials, rungs, pass.footprint, pass.shape), 1);
+  pass.material = material_within(own, cell, step, size_px, min(taps_px, size_px));
   return pass;
 }
 
-kernel void choose_passes(struct FrameParams f, int cells_per_item, global const struct CellParams* cells,
+kernel void choose_passes(struct FrameParams f, int cells_per_item, global const struct MaterialParams* materials,
+                          global const struct RungParams* rungs, global const struct CellParams* cells,
                           global struct CellPasses* passes, global volatile int* counters) {
   const int cell_y = get_global_id(1);
   const int first = get_global_id(0) * cells_per_item;
   int scattered = 0;
   int narrow = 0;
   int flat = 0;
+  int smooth = 0;
   for (int cell_x = first; cell_x < min(first + cells_per_item, f.cells_x); ++cell_x) {
     const int cell = cell_y * f.cells_x + cell_x;
-    passes[cell].x = pass_over(&f, cells, cell_x, cell_y, 0);
-    passes[cell].y = pass_over(&f, cells, cell_x, cell_y, 1);
+    passes[cell].x = pass_over(&f, materials, rungs, cells, cell_x, cell_y, 0);
+    passes[cell].y = pass_over(&f, materials, rungs, cells, cell_x, cell_y, 1);
     scattered += cells[cell].scattered;
     narrow += cells[cell].narrow;
-    if (passes[cell].x.footprint < 0.0f && passes[cell].y.footprint < 0.0f) flat += cells[cell].scattered;
+    const int shape = max(passes[cell].x.shape, passes[cell].y.shape);
+    if (shape == SHAPE_FLAT) flat += cells[cell].scattered;
+    if (shape == SHAPE_SMOOTH) smooth += cells[cell].scattered;
   }
   atomic_add(counters + COUNTER_SCATTERED, scattered);
   atomic_add(counters + COUNTER_NARROW, narrow);
   atomic_add(counters + COUNTER_FLAT, flat);
+  atomic_add(counters + COUNTER_SMOOTH, smooth);
 }

@@ -10,14 +10,9 @@ static inline int farthest_tap(const struct FrameParams* f, const Tables* tables
   int farthest = 0;
   for (int cy = y_begin / CELL; cy * CELL < y_end; ++cy) {
     for (int cx = x_begin / CELL; cx * CELL < x_end; ++cx) {
-      const float footprint = cell_pass(f, tables, cx, cy, axis).footprint;
+      const struct CellPass pass = cell_pass(f, tables, cx, cy, axis);
       for (int m = 0; m < MATERIALS; ++m) {
-        const int index =
-            step_of(fabs(footprint) * tables->materials[m].radius_mm, footprint < 0.0f, tables->materials[m].rungs)
-                .rung;
-        if (index >= 0) {
-          farthest = max(farthest, tables->rungs[tables->materials[m].first_rung + index].last_offset_px);
-        }
+        farthest = max(farthest, last_offset_of(tables->materials + m, tables->rungs, pass.footprint, pass.shape));
       }
     }
   }
@@ -54,8 +49,50 @@ static inline void copy_tile(const struct FrameParams* f, const Inputs* in, cons
   }
 }
 
-// Rows that the vertical pass computes as soon as the horizontal one has made what it reads of them.
-#define BAND 16
+// The most curved shape of a cell of a rectangle in a pass.
+static inline int worst_shape(const struct FrameParams* f, const Tables* tables, int x_begin, int x_end, int y_begin,
+                              int y_end, int axis) {
+  int worst = SHAPE_FLAT;
+  for (int cy = y_begin / CELL; cy * CELL < y_end; ++cy) {
+    for (int cx = x_begin / CELL; cx * CELL < x_end; ++cx) {
+      const struct CellPass pass = cell_pass(f, tables, cx, cy, axis);
+      if (pass.footprint > 0.0f) worst = max(worst, pass.shape);
+    }
+  }
+  return worst;
+}
+
+// Some pixels of a row; none if the end is not after the beginning.
+typedef struct {
+  int begin, end;
+} Columns;
+
+// The columns in which some cell of a rectangle is at least that curved in a pass.
+static inline Columns columns_of(const struct FrameParams* f, const Tables* tables, int x_begin, int x_end, int y_begin,
+                                 int y_end, int axis, int shape) {
+#if JITTER
+  const Columns all = {x_begin, x_end};
+  return all;
+#endif
+  Columns columns = {x_end, x_begin};
+  for (int cy = y_begin / CELL; cy * CELL < y_end; ++cy) {
+    for (int cx = x_begin / CELL; cx * CELL < x_end; ++cx) {
+      const struct CellPass pass = cell_pass(f, tables, cx, cy, axis);
+      if (pass.footprint == 0.0f || pass.shape < shape) continue;
+      columns.begin = min(columns.begin, cx * CELL);
+      columns.end = max(columns.end, cx * CELL + CELL);
+    }
+  }
+  return columns;
+}
+
+// With those that lie so many pixels around them, within a window with its padding.
+static inline Columns widened(Columns columns, int by_px, const Window* w) {
+  if (columns.end <= columns.begin) return columns;
+  columns.begin = max((columns.begin - by_px) & ~(CELL - 1), w->x_begin - PADDING);
+  columns.end = min(columns.end + by_px, w->x_end + PADDING);
+  return columns;
+}
 
 // What the horizontal pass of a tile reads, and what it writes and the vertical pass reads.
 typedef struct {
@@ -67,13 +104,21 @@ typedef struct {
   int y_begin, y_end;
   int own_x_begin, own_x_end;  // of the tile
   int own_y_begin, own_y_end;
-  int curved_across;  // some cell
-  int curved_down;
-  int reach_y;  // of the taps of the vertical pass
+  int shape_across;  // the most curved one of all cells
+  int shape_down;
+  Columns bent_down;  // cells that are not flat in the vertical pass, in any row
+  Columns curved_down;
+  int reach_x;  // of the taps of the horizontal pass
+  int reach_y;
 } Windows;
 
-// How many rows before their turn the images are fetched.
+// How many rows before their turn the images are fetched: rows of a tile are too short for a processor to see them
+// coming.
 #define ROWS_AHEAD 2
+
+static inline RgbRow later_light(const Windows* w, const struct FrameParams* f, const Inputs* in, int y) {
+  return rgb_row_of(in->light, &in->light_at, f->width, min(y + ROWS_AHEAD, w->across.y_end - 1));
+}
 
 // Light of one row of the horizontal pass's window.
 SHARED void load_light_row(Sight* sight, const Windows* w, const struct FrameParams* f, const Inputs* in, int y) {
@@ -81,13 +126,11 @@ SHARED void load_light_row(Sight* sight, const Windows* w, const struct FramePar
   const InputRows rows = input_rows(f, in, y);
   const int in_down = y >= w->down.y_begin && y < w->down.y_end;
   const int is_own = y >= w->own_y_begin && y < w->own_y_end;
-  // Rows of a tile are too short for a processor to see them coming.
-  const InputRows later = input_rows(f, in, min(y + ROWS_AHEAD, across->y_end - 1));
+  const RgbRow later = later_light(w, f, in, y);
   vint varied = (vint)(0);
   for (int x = across->x_begin - PADDING; x < across->x_end + PADDING; x += V) {
-    fetch_ahead(later.light.r.at, later.light.r.pixel_stride, x);
-    fetch_ahead(later.light.g.at, later.light.g.pixel_stride, x);
-    fetch_ahead(later.light.b.at, later.light.b.pixel_stride, x);
+    // What lies between is fetched bit by bit beside the horizontal pass.
+    if (x < w->x_begin || x >= w->x_end) fetch_rgb_ahead(&later, x);
     const LoadedLight loaded = load_light(across, f, &rows, x, y);
     if (in_down && x >= w->x_begin && x < w->x_end) {
       store_bytes(w->down.material + pixel_at(&w->down, x, y), loaded.material);
@@ -114,7 +157,15 @@ SHARED void load_light_row(Sight* sight, const Windows* w, const struct FramePar
 SHARED void load_surface_row(const Window* w, const struct FrameParams* f, const Inputs* in,
                              global const struct MaterialParams* materials, int x_begin, int x_end, int y) {
   const InputRows rows = input_rows(f, in, y);
-  for (int x = x_begin; x < x_end; x += V) load_surface(w, f, &rows, materials, x, y);
+#if HAS_DEPTH
+  const Row later = row_of(in->depth, &in->depth_at, f->width, min(y + ROWS_AHEAD, f->height - 1), 0);
+#endif
+  for (int x = x_begin; x < x_end; x += V) {
+#if HAS_DEPTH
+    fetch_ahead(later.at, later.pixel_stride, x);
+#endif
+    load_surface(w, f, &rows, materials, x, y);
+  }
 }
 
 SHARED void measure_segments(const Window* w, const struct FrameParams* f, int axis, int x_begin, int x_end, int y) {
@@ -130,34 +181,26 @@ static inline struct ChoiceParams choice_of(const struct FrameParams* f, const T
   if (JITTER || pass.material == 0) return choice;
   choice.material = pass.material - 1;
   global const struct MaterialParams* its = tables->materials + choice.material;
-  const Step step = step_of(fabs(pass.footprint) * its->radius_mm, pass.footprint < 0.0f, its->rungs);
+  const Step step = step_of(its, pass.footprint, pass.shape);
   if (step.rung < 0) return choice;
-  choice.way = pass.footprint < 0.0f ? WAY_FLAT : WAY_CURVED;
+  choice.way = pass.shape;
   choice.rung = its->first_rung + step.rung;
-  choice.flat_weight = first_flat_weight(tables->rungs + choice.rung, step.part);
+  global const struct RungParams* rung = tables->rungs + choice.rung;
+  choice.weight = pass.shape == SHAPE_FLAT ? first_flat_weight(rung, step.part) : rung->first_smooth_weight;
   return choice;
 }
 
 static inline int same_choice(global const struct ChoiceParams* a, global const struct ChoiceParams* b) {
-  return a->way == b->way && a->material == b->material && a->rung == b->rung && a->flat_weight == b->flat_weight;
+  return a->way == b->way && a->material == b->material && a->rung == b->rung && a->weight == b->weight;
 }
 
 // Three planes, each with its own place.
 typedef struct {
   global float *r, *g, *b;  // of the first pixel
   size_t row_stride;
-  int streams;  // past the caches: nobody reads it soon
 } Planes;
 
 FORCED_INLINE void store_planes(const Planes* to, size_t at, vrgb value) {
-#if V > 1 && __has_builtin(__builtin_nontemporal_store)
-  if (to->streams) {
-    __builtin_nontemporal_store(value.r, (global vfloat*)(to->r + at));
-    __builtin_nontemporal_store(value.g, (global vfloat*)(to->g + at));
-    __builtin_nontemporal_store(value.b, (global vfloat*)(to->b + at));
-    return;
-  }
-#endif
 #if V > 1
   *(global unaligned_floats*)(to->r + at) = value.r;
   *(global unaligned_floats*)(to->g + at) = value.g;
@@ -169,8 +212,28 @@ FORCED_INLINE void store_planes(const Planes* to, size_t at, vrgb value) {
 #endif
 }
 
+// Part of a row of an output, past the caches: nobody reads it soon, so that its lines need not be fetched.
+FORCED_INLINE void stream_floats(global float* to, global const float* from, int count) {
+  int i = 0;
+#if V > 1 && __has_builtin(__builtin_nontemporal_store)
+  for (; i < count && ((size_t)(to + i) & (sizeof(vfloat) - 1)) != 0; ++i) to[i] = from[i];
+  for (; i + V <= count; i += V) __builtin_nontemporal_store(load_floats(from + i), (global vfloat*)(to + i));
+#endif
+  for (; i < count; ++i) to[i] = from[i];
+}
+
+SHARED void stream_planes(const Planes* to, const Planes* from, int x_begin, int x_end, int y_begin, int y_end) {
+  for (int y = y_begin; y < y_end; ++y) {
+    const size_t at = y * to->row_stride + x_begin;
+    const size_t from_at = y * from->row_stride + x_begin;
+    stream_floats(to->r + at, from->r + from_at, x_end - x_begin);
+    stream_floats(to->g + at, from->g + from_at, x_end - x_begin);
+    stream_floats(to->b + at, from->b + from_at, x_end - x_begin);
+  }
+}
+
 // Flat cells of one row.
-SHARED void across_flat(const Windows* w, const Tables* tables, struct ChoiceParams choice, int x_begin, int x_end,
+SHARED void across_flat(const Windows* w, const Tables* tables, struct ChoiceParams choice, const RgbRow* later, int x_begin, int x_end,
                         int y) {
   const Window from = w->across;
   const Pass pass = pass_from(&from, 0);
@@ -178,24 +241,44 @@ SHARED void across_flat(const Windows* w, const Tables* tables, struct ChoicePar
   global float* to = w->down.light + pixel_at(&w->down, 0, y);
   global const struct RungParams* rung = tables->rungs + choice.rung;
   global const int* offsets = tables->offsets + rung->first_offset;
-  global const struct FlatWeight* weights = tables->flat_weights + choice.flat_weight;
+  global const struct FlatWeight* weights = tables->flat_weights + choice.weight;
   const int pairs = rung->pairs;
   for (int x = x_begin; x < x_end; x += V) {
+    fetch_rgb_ahead(later, x);
     vrgb result[TERMS];
     scatter_clean(result, &pass, offsets, pairs, weights, x, y);
     for (int t = 0; t < TERMS; ++t) store_rgb(to + 3 * t * plane, plane, x, result[t]);
   }
 }
 
+// Smooth cells of one row.
+SHARED void across_smooth(const Windows* w, const struct FrameParams* f, const Tables* tables,
+                          struct ChoiceParams choice, const RgbRow* later, int x_begin, int x_end, int y) {
+  const Window from = w->across;
+  const Pass pass = pass_from(&from, 0);
+  const size_t plane = w->down.plane;
+  global float* to = w->down.light + pixel_at(&w->down, 0, y);
+  global const struct RungParams* rung = tables->rungs + choice.rung;
+  global const int* offsets = tables->offsets + rung->first_offset;
+  global const struct SmoothWeight* weights = tables->smooth_weights + choice.weight;
+  for (int x = x_begin; x < x_end; x += V) {
+    fetch_rgb_ahead(later, x);
+    vrgb result[TERMS];
+    scatter_smooth_clean(result, f, &pass, rung, offsets, weights, x, y);
+    for (int t = 0; t < TERMS; ++t) store_rgb(to + 3 * t * plane, plane, x, result[t]);
+  }
+}
+
 // Curved cells of one row.
 SHARED void across_curved(const Windows* w, const struct FrameParams* f, const Tables* tables,
-                          struct ChoiceParams choice, int x_begin, int x_end, int y) {
+                          struct ChoiceParams choice, const RgbRow* later, int x_begin, int x_end, int y) {
   const Window from = w->across;
   const Pass pass = pass_from(&from, 0);
   const size_t plane = w->down.plane;
   global float* to = w->down.light + pixel_at(&w->down, 0, y);
   global const struct TermParams* terms = tables->terms + tables->materials[choice.material].first_term;
   for (int x = x_begin; x < x_end; x += V) {
+    fetch_rgb_ahead(later, x);
     vrgb result[TERMS];
     scatter_curved(result, f, &pass, tables, tables->rungs + choice.rung, terms, (vint)(choice.material + 1), x, y, 1);
     for (int t = 0; t < TERMS; ++t) store_rgb(to + 3 * t * plane, plane, x, result[t]);
@@ -203,12 +286,13 @@ SHARED void across_curved(const Windows* w, const struct FrameParams* f, const T
 }
 
 // Any cells of one row.
-SHARED void across_any(const Windows* w, const struct FrameParams* f, const Tables* tables, int x_begin, int x_end,
+SHARED void across_any(const Windows* w, const struct FrameParams* f, const Tables* tables, const RgbRow* later, int x_begin, int x_end,
                        int y) {
   const Pass pass = pass_from(&w->across, 0);
   const size_t plane = w->down.plane;
   global float* to = w->down.light + pixel_at(&w->down, 0, y);
   for (int x = x_begin; x < x_end; x += V) {
+    fetch_rgb_ahead(later, x);
     vrgb result[TERMS];
     scatter_pixels(result, f, &pass, tables, x, y);
     for (int t = 0; t < TERMS; ++t) store_rgb(to + 3 * t * plane, plane, x, result[t]);
@@ -216,9 +300,10 @@ SHARED void across_any(const Windows* w, const struct FrameParams* f, const Tabl
 }
 
 // The horizontal pass over one row of uniform light: a term is its sum times the light.
-SHARED void across_uniform(const Windows* w, const Tables* tables, const Sight* sight, int y) {
+SHARED void across_uniform(const Windows* w, const Tables* tables, const Sight* sight, const RgbRow* later, int y) {
   const vrgb light = {(vfloat)(sight->light[0]), (vfloat)(sight->light[1]), (vfloat)(sight->light[2])};
   for (int x = w->x_begin; x < w->x_end; x += V) {
+    fetch_rgb_ahead(later, x);
     const vint m = load_bytes(w->across.material + pixel_at(&w->across, x, y)) & MATERIAL_MASK;
     for (int t = 0; t < TERMS; ++t) {
       vrgb result = same_rgb((vfloat)(0.0f));
@@ -232,15 +317,16 @@ SHARED void across_uniform(const Windows* w, const Tables* tables, const Sight* 
 }
 
 // The horizontal pass over one row.
-static inline void scatter_row(const Windows* w, const struct FrameParams* f, const Tables* tables, const Sight* sight,
-                               int skips, int y) {
+static inline void scatter_row(const Windows* w, const struct FrameParams* f, const Inputs* in, const Tables* tables,
+                               const Sight* sight, int skips, int y) {
+  const RgbRow later = later_light(w, f, in, y);
   const int cells = (w->x_end - w->x_begin + CELL - 1) / CELL;
   // Even if the light of this row is uniform: that of the next may not be.
   if (y % CELL == 0 || y == w->y_begin) {
     for (int i = 0; i < cells; ++i) w->choices[i] = choice_of(f, tables, w->x_begin / CELL + i, y / CELL, 0);
   }
   if (skips && sight->last_varied != y) {
-    across_uniform(w, tables, sight, y);
+    across_uniform(w, tables, sight, &later, y);
     return;
   }
   int end = 0;
@@ -250,11 +336,13 @@ static inline void scatter_row(const Windows* w, const struct FrameParams* f, co
     const int x_end = min(w->x_begin + end * CELL, w->x_end);
     const int way = sight->last_bad == y ? WAY_GENERAL : w->choices[i].way;
     if (way == WAY_FLAT) {
-      across_flat(w, tables, w->choices[i], x, x_end, y);
+      across_flat(w, tables, w->choices[i], &later, x, x_end, y);
+    } else if (way == WAY_SMOOTH) {
+      across_smooth(w, f, tables, w->choices[i], &later, x, x_end, y);
     } else if (way == WAY_CURVED) {
-      across_curved(w, f, tables, w->choices[i], x, x_end, y);
+      across_curved(w, f, tables, w->choices[i], &later, x, x_end, y);
     } else {
-      across_any(w, f, tables, x, x_end, y);
+      across_any(w, f, tables, &later, x, x_end, y);
     }
   }
 }
@@ -267,13 +355,32 @@ SHARED void down_flat(const Windows* w, const Tables* tables, struct ChoiceParam
   const Planes target = *to;
   global const struct RungParams* rung = tables->rungs + choice.rung;
   global const int* offsets = tables->offsets + rung->first_offset;
-  global const struct FlatWeight* weights = tables->flat_weights + choice.flat_weight;
+  global const struct FlatWeight* weights = tables->flat_weights + choice.weight;
   const int pairs = rung->pairs;
   global const struct TermParams* terms = tables->terms + tables->materials[choice.material].first_term;
   for (int y = y_begin; y < y_end; ++y) {
     for (int x = x_begin; x < x_end; x += V) {
       vrgb result[TERMS];
       scatter_clean(result, &pass, offsets, pairs, weights, x, y);
+      store_planes(&target, y * target.row_stride + x, total_of(terms, result));
+    }
+  }
+}
+
+// A smooth cell, down.
+SHARED void down_smooth(const Windows* w, const struct FrameParams* f, const Tables* tables, struct ChoiceParams choice,
+                        const Planes* to, int x_begin, int x_end, int y_begin, int y_end) {
+  const Window from = w->down;
+  const Pass pass = pass_from(&from, 1);
+  const Planes target = *to;
+  global const struct RungParams* rung = tables->rungs + choice.rung;
+  global const int* offsets = tables->offsets + rung->first_offset;
+  global const struct SmoothWeight* weights = tables->smooth_weights + choice.weight;
+  global const struct TermParams* terms = tables->terms + tables->materials[choice.material].first_term;
+  for (int y = y_begin; y < y_end; ++y) {
+    for (int x = x_begin; x < x_end; x += V) {
+      vrgb result[TERMS];
+      scatter_smooth_clean(result, f, &pass, rung, offsets, weights, x, y);
       store_planes(&target, y * target.row_stride + x, total_of(terms, result));
     }
   }
@@ -316,13 +423,12 @@ static inline Planes band_of(const Windows* w, int y_begin) {
   band.g = band.r + BAND * row_stride;
   band.b = band.g + BAND * row_stride;
   band.row_stride = row_stride;
-  band.streams = 0;
   return band;
 }
 
 // Where it goes if it is the output.
 static inline Planes output_of(const struct FrameParams* f, const Outputs* out, global float* held) {
-  Planes planes = {0, 0, 0, 0, 0};
+  Planes planes = {0, 0, 0, 0};
   if (held) {
     planes.r = held + PADDING;
     planes.g = planes.r + (size_t)f->stride * f->height;
@@ -336,8 +442,6 @@ static inline Planes output_of(const struct FrameParams* f, const Outputs* out, 
     planes.g = (global float*)(first + out->scattered_at.channel_stride);
     planes.b = (global float*)(first + 2 * (Bytes)out->scattered_at.channel_stride);
     planes.row_stride = out->scattered_at.row_stride / 4;
-    planes.streams = (((size_t)planes.r | (size_t)planes.g | (size_t)planes.b | out->scattered_at.row_stride) &
-                      (sizeof(vfloat) - 1)) == 0;
 #endif
   }
   return planes;
@@ -368,7 +472,42 @@ static inline void compose_band(const Windows* w, const struct FrameParams* f, c
   }
 }
 
-// The vertical pass over some rows of one row of cells of the tile, and their outputs.
+// What is in the band into the outputs: composed, or as it is.
+static inline void put_band(const Windows* w, const struct FrameParams* f, const Inputs* in, const Outputs* out,
+                            int composes, int all_finite, global float* held, const Planes* band, const Planes* output,
+                            int x_begin, int x_end, int y_begin, int y_end) {
+  if (composes) {
+    compose_band(w, f, in, out, 0, all_finite, held, band, x_begin, x_end, y_begin, y_end);
+  } else {
+    stream_planes(output, band, x_begin, x_end, y_begin, y_end);
+  }
+}
+
+// The vertical pass over some rows of one column of cells, into the band. Returns whether some of its pixels may be
+// such that their outputs are not the light after it.
+static inline int scatter_column(const Windows* w, const struct FrameParams* f, const Tables* tables,
+                                 const Planes* band, int has_bad, int x, int y_begin, int y_end) {
+  const int x_end = min(x + CELL, w->own_x_end);
+  int composes = 0;
+  for (int y = y_begin, end = y_begin; y < y_end; y = end) {
+    end = min((y / CELL + 1) * CELL, y_end);
+    const struct ChoiceParams choice = choice_of(f, tables, x / CELL, y / CELL, 1);
+    const int way = has_bad ? WAY_GENERAL : choice.way;
+    if (way == WAY_FLAT) {
+      down_flat(w, tables, choice, band, x, x_end, y, end);
+    } else if (way == WAY_SMOOTH) {
+      down_smooth(w, f, tables, choice, band, x, x_end, y, end);
+    } else if (way == WAY_CURVED) {
+      down_curved(w, f, tables, choice, band, x, x_end, y, end);
+    } else {
+      down_any(w, f, tables, band, x, x_end, y, end);
+      composes = 1;
+    }
+  }
+  return composes;
+}
+
+// The vertical pass over some rows of the tile, and their outputs.
 static inline void scatter_down(const Windows* w, const struct FrameParams* f, const Inputs* in, const Outputs* out,
                                 const Tables* tables, const Sight* sight, int skips, global float* held, int y_begin,
                                 int y_end) {
@@ -381,32 +520,17 @@ static inline void scatter_down(const Windows* w, const struct FrameParams* f, c
   }
   const Planes output = output_of(f, out, held);
   // Column of cells after column: the rows that taps of a column fall on stay in the first-level cache.
+  int run_begin = w->own_x_begin;
+  int run_composes = 0;
   for (int x = w->own_x_begin; x < w->own_x_end; x += CELL) {
-    const int x_end = min(x + CELL, w->own_x_end);
-    struct ChoiceParams choice = choice_of(f, tables, x / CELL, y_begin / CELL, 1);
-    if (has_bad) choice.way = WAY_GENERAL;
-    const int composes = choice.way == WAY_GENERAL || !output.r;
-    const Planes* to = composes ? &band : &output;
-    if (choice.way == WAY_FLAT) {
-      down_flat(w, tables, choice, to, x, x_end, y_begin, y_end);
-    } else if (choice.way == WAY_CURVED) {
-      down_curved(w, f, tables, choice, to, x, x_end, y_begin, y_end);
-    } else {
-      down_any(w, f, tables, to, x, x_end, y_begin, y_end);
-    }
-    if (composes) compose_band(w, f, in, out, 0, !has_bad, held, &band, x, x_end, y_begin, y_end);
-  }
-}
-
-// Whether some cell of a rectangle is curved in a pass.
-static inline int any_curved(const struct FrameParams* f, const Tables* tables, int x_begin, int x_end, int y_begin,
-                             int y_end, int axis) {
-  for (int cy = y_begin / CELL; cy * CELL < y_end; ++cy) {
-    for (int cx = x_begin / CELL; cx * CELL < x_end; ++cx) {
-      if (cell_pass(f, tables, cx, cy, axis).footprint > 0.0f) return 1;
+    const int composes = scatter_column(w, f, tables, &band, has_bad, x, y_begin, y_end) || !output.r;
+    if (composes != run_composes) {
+      put_band(w, f, in, out, run_composes, !has_bad, held, &band, &output, run_begin, x, y_begin, y_end);
+      run_begin = x;
+      run_composes = composes;
     }
   }
-  return 0;
+  put_band(w, f, in, out, run_composes, !has_bad, held, &band, &output, run_begin, w->own_x_end, y_begin, y_end);
 }
 
 // Both passes.
@@ -417,28 +541,39 @@ static inline Sight scatter_rows(const Windows* w, const struct FrameParams* f, 
   const Window* down = &w->down;
   int next = w->own_y_begin;
   int next_surface = down->y_begin;
-  int curved_across = 0;
+  const Columns nothing = {0, 0};
+  Columns bent = nothing;
+  Columns curved = nothing;
   for (int y = across->y_begin; y < across->y_end; ++y) {
     load_light_row(&sight, w, f, in, y);
-    if (y % CELL == 0 || y == across->y_begin) {
-      curved_across = JITTER || any_curved(f, tables, w->x_begin, w->x_end, y, y + 1, 0);
+    if (w->shape_across != SHAPE_FLAT && (y % CELL == 0 || y == across->y_begin)) {
+      bent = widened(columns_of(f, tables, w->x_begin, w->x_end, y, y + 1, 0, SHAPE_SMOOTH), 0, across);
+      curved = widened(columns_of(f, tables, w->x_begin, w->x_end, y, y + 1, 0, SHAPE_CURVED), w->reach_x + V, across);
     }
-    if (curved_across) {
-      load_surface_row(across, f, in, tables->materials, across->x_begin - PADDING, across->x_end + PADDING, y);
-      measure_segments(across, f, 0, across->x_begin, across->x_end, y);
+    if (bent.begin < bent.end) {
+      Columns loaded = bent;
+      if (curved.begin < curved.end) {
+        loaded.begin = min(bent.begin, curved.begin);
+        loaded.end = max(bent.end, curved.end);
+      }
+      loaded = widened(loaded, V, across);  // slopes are taken from the next pixels, too
+      load_surface_row(across, f, in, tables->materials, loaded.begin, loaded.end, y);
     }
-    if (w->curved_down) {
+    measure_segments(across, f, 0, max(curved.begin, across->x_begin), min(curved.end, across->x_end), y);
+    if (w->shape_down != SHAPE_FLAT) {
       // Slopes are taken from the next row, too.
       for (; next_surface < min(y + 2, down->y_end); ++next_surface) {
-        load_surface_row(down, f, in, tables->materials, w->x_begin, w->x_end, next_surface);
+        load_surface_row(down, f, in, tables->materials, w->bent_down.begin, w->bent_down.end, next_surface);
       }
-      if (y >= w->y_begin && y < w->y_end) measure_segments(down, f, 1, w->x_begin, w->x_end, y);
+      if (y >= w->y_begin && y < w->y_end) {
+        measure_segments(down, f, 1, w->curved_down.begin, w->curved_down.end, y);
+      }
     }
 #if !JITTER
-    scatter_row(w, f, tables, &sight, skips, y);
+    scatter_row(w, f, in, tables, &sight, skips, y);
     // At the end of the window all that is left is complete.
     while (next < w->own_y_end) {
-      const int end = min((next / CELL + 1) * CELL, w->own_y_end);
+      const int end = min((next / BAND + 1) * BAND, w->own_y_end);
       if (y + 1 < min(end + w->reach_y, across->y_end)) break;
       scatter_down(w, f, in, out, tables, &sight, skips, held, next, end);
       next = end;
@@ -447,10 +582,10 @@ static inline Sight scatter_rows(const Windows* w, const struct FrameParams* f, 
   }
 #if JITTER
   // Turned taps need all rows.
-  for (int y = w->y_begin; y < w->y_end; ++y) scatter_row(w, f, tables, &sight, 0, y);
+  for (int y = w->y_begin; y < w->y_end; ++y) scatter_row(w, f, in, tables, &sight, 0, y);
   sight.last_bad = sight.last_varied = w->y_end;
   while (next < w->own_y_end) {
-    const int end = min((next / CELL + 1) * CELL, w->own_y_end);
+    const int end = min((next / BAND + 1) * BAND, w->own_y_end);
     scatter_down(w, f, in, out, tables, &sight, 0, held, next, end);
     next = end;
   }
@@ -493,8 +628,11 @@ static inline Windows windows_of(const struct FrameParams* f, const Tables* tabl
 #else
   const int margin_px = 0;
 #endif
-  w.curved_across = JITTER || any_curved(f, tables, w.x_begin, w.x_end, w.y_begin, w.y_end, 0);
-  w.curved_down = JITTER || any_curved(f, tables, x_begin, x_end, y_begin, y_end, 1);
+  w.shape_across = JITTER ? SHAPE_CURVED : worst_shape(f, tables, w.x_begin, w.x_end, w.y_begin, w.y_end, 0);
+  w.shape_down = JITTER ? SHAPE_CURVED : worst_shape(f, tables, x_begin, x_end, y_begin, y_end, 1);
+  w.bent_down = columns_of(f, tables, w.x_begin, w.x_end, w.y_begin, w.y_end, 1, SHAPE_SMOOTH);
+  w.curved_down = columns_of(f, tables, w.x_begin, w.x_end, w.y_begin, w.y_end, 1, SHAPE_CURVED);
+  w.reach_x = max(reach_x, margin_px);
   struct WindowParams p;
   p.x_begin = max(w.x_begin - max(reach_x, margin_px), 0) & ~(CELL - 1);
   p.x_end = (min(w.x_end + max(reach_x, margin_px), f->width) + CELL - 1) & ~(CELL - 1);
@@ -544,13 +682,14 @@ static inline int scatter_tile(const struct FrameParams* f, const Inputs* in, co
   if (skips && sight.last_varied < w.y_begin) {
     return sight.light[0] == 0.0f && sight.light[1] == 0.0f && sight.light[2] == 0.0f ? TILE_UNLIT : TILE_UNIFORM;
   }
-  return w.curved_across || w.curved_down ? TILE_CURVED : TILE_FLAT;
+  return TILE_FLAT + max(w.shape_across, w.shape_down);
 }
 
 kernel void scatter(struct FrameParams f, global const struct MaterialParams* materials,
                     global const struct TermParams* terms, global const struct RungParams* rungs,
                     global const int* offsets, global const struct WeightParams* weights,
-                    global const struct FlatWeight* flat_weights, global const struct RotationParams* rotations,
+                    global const struct FlatWeight* flat_weights,
+                    global const struct SmoothWeight* smooth_weights, global const struct RotationParams* rotations,
                     uint seed,                                                                              //
                     global const uchar* surface, global const struct CellParams* cells,                     //
                     global const struct CellPasses* passes,                                                 //
@@ -566,7 +705,7 @@ kernel void scatter(struct FrameParams f, global const struct MaterialParams* ma
   const Inputs in = {light, albedo, depth, mask, light_at, albedo_at, depth_at, mask_at, surface};
   const Outputs out = {beauty,    scattered,        result,        beauty_at, scattered_at,
                        result_at, writes_scattered, writes_result, zeroes_bad};
-  const Tables tables = {materials, terms, rungs, offsets, weights, flat_weights, rotations, passes, seed};
+  const Tables tables = {materials, terms, rungs, offsets, weights, flat_weights, smooth_weights, rotations, passes, seed};
   // There are more work-items than workers, as a device may give several to one thread; the first ones do the work.
   global uchar* own_memory = 0;
   int bad = 0;

@@ -85,9 +85,10 @@ enum class TileKind : std::uint8_t {
   unlit,             ///< skipped: no light within reach
   uniform,           ///< skipped: the same light everywhere within reach
   flat,              ///< filtered without depth terms
+  smooth,            ///< filtered without the depth of taps
   curved,            ///< filtered
 };
-inline constexpr int tile_kinds = 6;
+inline constexpr int tile_kinds = 7;
 
 /// What became of each tile, row by row.
 struct TileMap {
@@ -113,6 +114,7 @@ struct Stats {
   std::int64_t pixels_without_material = 0;
   std::int64_t pixels_narrow = 0;  ///< the kernel is narrower than half a pixel
   std::int64_t pixels_flat = 0;    ///< of those scattered, on cells that need no depth terms in either pass
+  std::int64_t pixels_smooth = 0;  ///< of the others, on cells that need not the depth of taps in either pass
   std::int64_t pixels_bad = 0;     ///< light or albedo not finite; counted where tiles are filtered
 
   /// Tiles of one kind.

@@ -130,6 +130,11 @@ struct Rung {
   /// centre, then of the first pair, ... Multiples of 2^-24; of a normalised term they sum to exactly 1. The centre's
   /// is used if the term is normalised.
   std::array<std::vector<std::array<float, 3>>, 8> flat_weights;
+  /// What the flat weights of the rung's middle (the fifth eighth) change by on a smooth cell: with the stretch q, of all
+  /// terms of the centre, then of the first pair, ... Multiples of 2^-20, which sum to exactly 0 in every term; and with
+  /// the skew k, of all terms of the first pair, ..., for the tap at + of a pair, the other one changing by the opposite.
+  std::vector<std::array<float, 3>> stretch_weights;
+  std::vector<std::array<float, 3>> skew_weights;
 };
 
 /// What the separable passes need to know of a profile: a ladder of tap sets over kernel size, so that
@@ -168,7 +173,16 @@ struct Rung {
 ///         and 2 dz <= columns (|g'| + dg) + rows (|h'| + dh) + |T|   no step, columns and rows counting the pixels of
 ///                                                       those cells that lie in the frame
 ///
-/// and the same with x and y exchanged.
+/// and the same with x and y exchanged. A cell is smooth in a pass if it is not flat, but would be with `smoothness` in
+/// place of `flatness`. Its rung is the nearest to the same kernel radius, and the weights are, to first order, those
+/// of the true distances along a surface that bends:
+///
+///     w_i = flat_weights_i + q stretch_weights_i +- k skew_weights_i
+///     q = rung.footprint^2 |T|^2 - 1,  k = rung.footprint^2 T.T'    both held within -most_stretch..most_stretch and
+///                                                                 -most_skew / last offset..most_skew / last offset
+///
+/// where T is the pixel's own change of position along the pass and T' that of T, both by central differences of depth (of
+/// the difference to the only neighbour of the same material if the other one is of another; 0 if there is none).
 struct Taps {
   /// The radius, mm, beyond which the passes do not look: 99.9 % of the widest channel's marginal lie within for rank
   /// 1, 99.99 % for rank 2, 99.999 % for more.
@@ -178,8 +192,13 @@ struct Taps {
   std::vector<Term> terms;  ///< the first is normalised
   std::vector<Rung> rungs;  ///< see rung_index
 
-  /// How much of its length the change of position per pixel may vary within reach on a flat cell.
+  /// How much of its length the change of position per pixel may vary within reach on a flat cell, and on a smooth one.
   static constexpr float flatness = 0.1F;
+  static constexpr float smoothness = 0.4F;
+
+  /// Bounds of q, and of k times the farthest tap's offset.
+  static constexpr float most_stretch = 0.75F;
+  static constexpr float most_skew = 0.5F;
 
   /// Kernel radii of the first and the last rung, px: narrower kernels are left alone, wider ones use the last rung.
   static constexpr float min_radius_px = 0.5F;

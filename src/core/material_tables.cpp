@@ -40,6 +40,22 @@ params::OctavesParams octaves_params(const RadialTable& table) {
   return row;
 }
 
+void append_smooth_weights(const Rung& rung, std::size_t terms, std::size_t terms_per_material,
+                           MaterialTables& tables) {
+  const auto& flat_weights = rung.flat_weights[RUNG_PARTS / 2];
+  for (std::size_t row = 0; row <= rung.offsets_px.size(); ++row) {
+    for (std::size_t t = 0; t < terms_per_material; ++t) {
+      params::SmoothWeight its{};
+      if (t < terms) {
+        std::copy_n(flat_weights[row * terms + t].begin(), 3, its.rgb);
+        std::copy_n(rung.stretch_weights[row * terms + t].begin(), 3, its.stretch);
+        if (row > 0) std::copy_n(rung.skew_weights[(row - 1) * terms + t].begin(), 3, its.skew);
+      }
+      tables.smooth_weights.push_back(its);
+    }
+  }
+}
+
 void append_rung(const Rung& rung, const Taps& taps, double jitter, std::size_t terms_per_material,
                  MaterialTables& tables) {
   const double rotated_px = jitter * rung.footprint * taps.radius_mm;
@@ -51,7 +67,7 @@ void append_rung(const Rung& rung, const Taps& taps, double jitter, std::size_t 
   tables.rungs.push_back({rung.footprint, rung.core_half_width_px, static_cast<int>(tables.offsets_px.size()),
                           static_cast<int>(rung.offsets_px.size()), static_cast<int>(rotated),
                           static_cast<int>(tables.weights.size()), static_cast<int>(tables.flat_weights.size()),
-                          last_px});
+                          static_cast<int>(tables.smooth_weights.size()), last_px});
   tables.offsets_px.insert(tables.offsets_px.end(), rung.offsets_px.begin(), rung.offsets_px.end());
   const std::size_t terms = taps.terms.size();
   for (std::size_t row = 0; row <= rung.offsets_px.size(); ++row) {
@@ -75,6 +91,7 @@ void append_rung(const Rung& rung, const Taps& taps, double jitter, std::size_t 
       }
     }
   }
+  append_smooth_weights(rung, terms, terms_per_material, tables);
 }
 
 void append_terms(const Taps& taps, std::size_t terms_per_material, MaterialTables& tables) {

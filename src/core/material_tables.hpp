@@ -19,6 +19,7 @@ struct MaterialTables {
   std::vector<int> offsets_px;
   std::vector<params::WeightParams> weights;
   std::vector<params::FlatWeight> flat_weights;
+  std::vector<params::SmoothWeight> smooth_weights;
   std::vector<std::array<float, 4>> nodes;
   int farthest_px = 0;  ///< offset of the farthest tap
 };

@@ -151,7 +151,7 @@ void Passes::classify() {
                 memory_.surface, memory_.cells);
   events_.classify.push_back(launch(survey, columns, params_.cells_y, 1));
   cl::Kernel choose(plan_.classify_program, "choose_passes");
-  set_arguments(choose, params_, cells_per_item, memory_.cells, memory_.passes, memory_.counters);
+  set_arguments(choose, params_, cells_per_item, plan_.materials, plan_.rungs, memory_.cells, memory_.passes, memory_.counters);
   events_.classify.push_back(launch(choose, columns, params_.cells_y, 1));
   if (!plan_.tiled) prepare();
 }
@@ -199,7 +199,7 @@ void Passes::scatter_tiles() {
   cl::Kernel kernel(plan_.program, "scatter");
   const auto flag = [](bool value) { return value ? 1 : 0; };
   set_arguments(kernel, params_, plan_.materials, plan_.terms, plan_.rungs, plan_.offsets, plan_.weights,
-                plan_.flat_weights, rotations_, plan_.options.seed, memory_.surface, memory_.cells, memory_.passes,  //
+                plan_.flat_weights, plan_.smooth_weights, rotations_, plan_.options.seed, memory_.surface, memory_.cells, memory_.passes,  //
                 images_.buffer(ImageName::light), images_.layout(ImageName::light),                                  //
                 images_.buffer(ImageName::albedo), images_.layout(ImageName::albedo),                                //
                 images_.buffer(ImageName::depth), images_.layout(ImageName::depth),                                  //
@@ -223,9 +223,9 @@ void Passes::scatter_pixels() {
   for (const char* name : {"scatter_x", "scatter_y"}) {
     cl::Kernel kernel(plan_.program, name);
     set_arguments(kernel, params_, window_, plan_.materials, plan_.terms, plan_.rungs, plan_.offsets, plan_.weights,
-                  plan_.flat_weights, rotations_, plan_.options.seed, memory_.passes, memory_.windows, plane,
+                  plan_.flat_weights, plan_.smooth_weights, rotations_, plan_.options.seed, memory_.passes, memory_.windows, plane,
                   memory_.between, memory_.segments);
-    if (events_.scatter.size() == 1) kernel.setArg(15, memory_.held);
+    if (events_.scatter.size() == 1) kernel.setArg(16, memory_.held);
     events_.scatter.push_back(launch(kernel, params_.width, params_.height, 0));
   }
 }
@@ -270,6 +270,7 @@ void Passes::add_to(Stats& stats) const {
   stats.pixels_narrow = counted[COUNTER_NARROW];
   stats.pixels_without_material = stats.pixels - stats.pixels_scattered - stats.pixels_narrow;
   stats.pixels_flat = counted[COUNTER_FLAT];
+  stats.pixels_smooth = counted[COUNTER_SMOOTH];
   stats.pixels_bad = counted[COUNTER_BAD];
   if (!plan_.tiled) return;
   TileMap& tiles = stats.tiles;

@@ -70,12 +70,13 @@ std::string define(const char* name, int value) { return std::string(" -D") + na
 /// What all kernels are built with.
 std::string common_options(const Plan::State& state, int materials) {
   const FrameDescription& frames = state.description;
-  std::ostringstream flatness;
-  flatness << " -DFLATNESS=" << std::scientific << Taps::flatness << "f";
+  std::ostringstream bounds;
+  bounds << std::scientific << " -DFLATNESS=" << Taps::flatness << "f -DSMOOTHNESS=" << Taps::smoothness
+         << "f -DMOST_STRETCH=" << Taps::most_stretch << "f -DMOST_SKEW=" << Taps::most_skew << "f";
   return "-cl-std=CL1.2" + define("MATERIALS", materials) + define("HAS_DEPTH", frames.depth ? 1 : 0) +
          define("HAS_MATERIAL", frames.material ? 1 : 0) + define("HAS_MASK", frames.mask ? 1 : 0) +
          define("HAS_ALBEDO", frames.albedo ? 1 : 0) + define("PIXEL_WIDTH", state.has_pixel_width ? 1 : 0) +
-         define("JITTER", state.options.jitter > 0 ? 1 : 0) + flatness.str();
+         define("JITTER", state.options.jitter > 0 ? 1 : 0) + bounds.str();
 }
 
 int vector_width(const Plan::State& state) { return state.item_is_pixel ? 1 : state.device.info().vector_width; }
@@ -211,6 +212,7 @@ Plan::Plan(const Device& device, std::vector<Material> materials, const FrameDes
     state->offsets = upload(context, tables.offsets_px);
     state->weights = upload(context, tables.weights);
     state->flat_weights = upload(context, tables.flat_weights);
+    state->smooth_weights = upload(context, tables.smooth_weights);
     state->nodes = upload(context, tables.nodes);
     state->classify_program = classification.get();
     state->program = passes.get();

@@ -21,6 +21,7 @@ struct Plan::State {
   cl::Buffer offsets;
   cl::Buffer weights;
   cl::Buffer flat_weights;
+  cl::Buffer smooth_weights;
   cl::Buffer nodes;
   int terms_per_material = 1;
   int farthest_px = 0;           ///< no tap lies farther away

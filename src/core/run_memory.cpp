@@ -45,14 +45,14 @@ std::size_t RunSizes::down_plane() const {
   const std::size_t columns =
       std::min<std::size_t>(stride(), round_up(tile_width, CELL) + 2 * turned + 2 * PADDING) + CELL;
   // Without turned taps a row is not needed any more when the vertical pass is beyond it.
-  constexpr std::size_t band_rows = CELL + 3;
+  constexpr std::size_t band_rows = BAND + 3;
   const std::size_t rows = std::min<std::size_t>(height, turns_taps ? tile_height + 2 * reach : 2 * reach + band_rows);
   return static_cast<std::size_t>(round_up(static_cast<int>(columns), alignment)) * std::bit_ceil(rows);
 }
 
 std::size_t RunSizes::windows_bytes() const {
   if (workers == 0) return window_bytes(across_plane(), 1, has_pixel_width);
-  const std::size_t band_bytes = 3 * 16 * static_cast<std::size_t>(round_up(tile_width, CELL)) * sizeof(float);
+  const std::size_t band_bytes = 3 * BAND * static_cast<std::size_t>(round_up(tile_width, CELL)) * sizeof(float);
   return workers *
          (window_bytes(across_plane(), 1, has_pixel_width) + window_bytes(down_plane(), terms, has_pixel_width) +
           band_bytes + across_plane() / CELL * sizeof(params::ChoiceParams));

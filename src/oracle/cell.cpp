@@ -3,6 +3,8 @@
 #include <cmath>
 #include <cstddef>
 
+#include "oracle/ladder.hpp"
+
 namespace dermis::oracle {
 
 namespace {
@@ -42,6 +44,7 @@ void Cells::Largest::add(Bounded value, bool counts, bool unsure) {
 
 Cells::Cells(const Surface& surface, std::span<const Material> materials, bool may_be_flat)
     : surface_(surface),
+      materials_(materials),
       may_be_flat_(may_be_flat),
       columns_(cells_over(surface.width())),
       rows_(cells_over(surface.height())),
@@ -49,15 +52,17 @@ Cells::Cells(const Surface& surface, std::span<const Material> materials, bool m
   for (int row = 0; row < rows_; ++row) {
     for (int column = 0; column < columns_; ++column) {
       Cell& cell = cells_[static_cast<std::size_t>(row) * columns_ + column];
-      for_each_pixel(column, row, [&](int x, int y) { add_pixel(cell, x, y, materials); });
+      for_each_pixel(column, row, [&](int x, int y) { add_pixel(cell, x, y); });
     }
   }
 }
 
-void Cells::add_pixel(Cell& cell, int x, int y, std::span<const Material> materials) const {
+void Cells::add_pixel(Cell& cell, int x, int y) const {
   const SurfacePixel& pixel = surface_.at(x, y);
   if (pixel.material < 0) return;
-  cell.radius_mm.add(as_float(materials[pixel.material].taps.radius_mm), pixel.wide, pixel.wide_unsure);
+  if (pixel.wide) cell.scatters.set(pixel.material);
+  if (pixel.wide && !pixel.wide_unsure) cell.surely_scatters.set(pixel.material);
+  if (pixel.wide || pixel.wide_unsure) cell.perhaps_scatters.set(pixel.material);
   cell.depth_mm.add(pixel.position_mm[2]);
   for (const Axis axis : {horizontal, vertical}) {
     cell.footprint[axis].add(pixel.effective_footprint[axis], pixel.wide, pixel.wide_unsure);
@@ -104,14 +109,17 @@ Cells::Decision Cells::both(Decision a, Decision b) {
   return {a.yes && b.yes, (a.unsure || b.unsure) && !surely_not};
 }
 
-void Cells::add_kinds(Axis axis, int column, int row, int reach_cells, std::vector<CellKind>& kinds) const {
-  const Surroundings near = surroundings(axis, column, row, reach_cells);
+/// How the position of the surface changes per pixel along a pass.
+struct Cells::Variation {
+  Bounded squared_length;          ///< of T in the middle
+  Bounded squared_length_varying;  ///< of dT
+};
+
+Cells::Variation Cells::variation(Axis axis, int column, int row, const Range& depth_mm, const Range& step_mm) const {
   const View& view = surface_.view();
   const std::array<int, 2> corner_px{cell_px * column, cell_px * row};
-  const Bounded step = near.step_mm[axis].middle();
-  const Bounded varying_step = near.step_mm[axis].half_range();
-  const Bounded varying_depth = near.depth_mm.half_range();
-
+  const Bounded step = step_mm.middle();
+  const Bounded varying_step = step_mm.half_range();
   Vector change;   // T
   Vector varying;  // dT
   for (const Axis i : {horizontal, vertical}) {
@@ -119,42 +127,86 @@ void Cells::add_kinds(Axis axis, int column, int row, int reach_cells, std::vect
     change[i] = ray * step;
     varying[i] = absolute(ray) * varying_step;
   }
-  change[axis] = change[axis] + view.size_mm(axis, near.depth_mm.middle());
-  varying[axis] = varying[axis] + view.growth_mm(axis, varying_depth);
+  change[axis] = change[axis] + view.size_mm(axis, depth_mm.middle());
+  varying[axis] = varying[axis] + view.growth_mm(axis, depth_mm.half_range());
   change[2] = step;
   varying[2] = varying_step;
+  return {squared_length(change), squared_length(varying)};
+}
 
-  const Bounded change2 = squared_length(change);
-  const Bounded length = square_root(change2);
-  const Bounded flatness = exact(Taps::flatness);
+void Cells::add_kinds(Axis axis, int column, int row, int reach_cells, std::vector<CellKind>& kinds) const {
+  const Cell& cell = at(column, row);
+  const Surroundings near = surroundings(axis, column, row, reach_cells);
+  const Variation within_reach = variation(axis, column, row, near.depth_mm, near.step_mm[axis]);
+  const Bounded length = square_root(within_reach.squared_length);
   Bounded largest_range = length;
   for (const Axis i : {horizontal, vertical}) {
     const Bounded steepest = absolute(near.step_mm[i].middle()) + near.step_mm[i].half_range();
     largest_range = largest_range + exact(near.size_px[i]) * steepest;
   }
-  const Decision even = is_at_most(squared_length(varying), flatness * flatness * change2);
-  const Decision unbroken = is_at_most(exact(2) * varying_depth, rounded(largest_range));
-  const Decision flat = both(even, unbroken);
-  for (const bool is_flat : {flat.yes, !flat.yes}) {
-    if (is_flat != flat.yes && !flat.unsure) continue;
-    kinds.push_back({is_flat, is_flat ? exact(1) / length : at(column, row).footprint[axis].bounded()});
+  const Decision unbroken = is_at_most(exact(2) * near.depth_mm.half_range(), rounded(largest_range));
+  const auto varies_at_most = [&](double share) {
+    return both(unbroken, is_at_most(within_reach.squared_length_varying,
+                                     exact(share) * exact(share) * within_reach.squared_length));
+  };
+  const Decision flat = varies_at_most(Taps::flatness);
+  const Decision smooth = varies_at_most(Taps::smoothness);
+
+  const auto add = [&](Shape shape) {
+    switch (shape) {
+      case Shape::flat:
+        kinds.push_back({shape, exact(1) / length});
+        break;
+      case Shape::smooth:
+        kinds.push_back(
+            {shape, exact(1) / square_root(variation(axis, column, row, cell.depth_mm, cell.step_mm[axis]).squared_length)});
+        break;
+      case Shape::curved:
+        kinds.push_back({shape, cell.footprint[axis].bounded()});
+    }
+  };
+  const Shape nominal = flat.yes ? Shape::flat : smooth.yes ? Shape::smooth : Shape::curved;
+  const bool may_be_smooth = (smooth.yes || smooth.unsure) && (!flat.yes || flat.unsure);
+  add(nominal);
+  if (flat.unsure && nominal != Shape::flat) add(Shape::flat);
+  if (may_be_smooth && nominal != Shape::smooth) add(Shape::smooth);
+  if (smooth.unsure && nominal != Shape::curved) add(Shape::curved);
+}
+
+/// An eighth more than the farthest tap of the materials that scatter, for the largest footprint.
+Cells::Reach Cells::reach(Axis axis, const Cell& cell) const {
+  const Bounded footprint = cell.footprint[axis].bounded();
+  Reach reach{};
+  for (std::size_t m = 0; m < materials_.size(); ++m) {
+    if (!cell.perhaps_scatters[m]) continue;
+    const Taps& taps = materials_[m].taps;
+    const Bounded radius_px = footprint * as_float(taps.radius_mm);
+    if (cell.scatters[m]) {
+      reach.nominal_px = std::max(reach.nominal_px, farthest_px(ladder_step(radius_px.value, false, taps), taps));
+    }
+    int least_px = std::numeric_limits<int>::max();
+    for (int step = ladder_step(radius_px.low(), false, taps); step <= ladder_step(radius_px.high(), false, taps);
+         ++step) {
+      const int its_px = farthest_px(step, taps);
+      least_px = std::min(least_px, its_px);
+      reach.most_px = std::max(reach.most_px, its_px);
+    }
+    if (cell.surely_scatters[m]) reach.least_px = std::max(reach.least_px, least_px);
   }
+  for (int* px : {&reach.nominal_px, &reach.least_px, &reach.most_px}) *px += *px / 8;
+  return reach;
 }
 
 std::vector<CellKind> Cells::kinds(Axis axis, int column, int row) const {
   const Cell& cell = at(column, row);
-  const Bounded footprint = cell.footprint[axis].bounded();
-  if (!may_be_flat_) return {{false, footprint}};
-  // What lies within ceil(r) pixels lies in the ceil(r / 16) cells to either side.
-  const Bounded reach_px = cell.radius_mm.bounded() * footprint;
-  const auto cells_within = [&](double reach) {
-    return static_cast<int>(
-        std::ceil(std::clamp(reach / cell_px, 0.0, static_cast<double>(std::max(columns_, rows_)))));
-  };
+  if (!may_be_flat_) return {{Shape::curved, cell.footprint[axis].bounded()}};
+  // What lies within r pixels lies in the ceil(r / 16) cells to either side.
+  const auto cells_within = [&](int reach_px) { return std::min(cells_over(reach_px), std::max(columns_, rows_)); };
+  const Reach reach_px = reach(axis, cell);
   std::vector<CellKind> kinds;
-  const int nominal = cells_within(reach_px.value);
+  const int nominal = cells_within(reach_px.nominal_px);
   add_kinds(axis, column, row, nominal, kinds);
-  for (int reach = cells_within(reach_px.low()); reach <= cells_within(reach_px.high()); ++reach) {
+  for (int reach = cells_within(reach_px.least_px); reach <= cells_within(reach_px.most_px); ++reach) {
     if (reach != nominal) add_kinds(axis, column, row, reach, kinds);
   }
   return kinds;

@@ -1,8 +1,9 @@
-/// Cells of 16 x 16 pixels: whether they are flat, and what footprint their rungs are chosen by. See Taps.
+/// Cells of 16 x 16 pixels: their shape, and what footprint their rungs are chosen by. See Taps.
 #pragma once
 
 #include <algorithm>
 #include <array>
+#include <bitset>
 #include <limits>
 #include <span>
 #include <vector>
@@ -16,10 +17,12 @@ namespace dermis::oracle {
 
 inline constexpr int cell_px = 16;
 
+enum class Shape { flat, smooth, curved };
+
 /// What a pass makes of a cell.
 struct CellKind {
-  bool flat;
-  Bounded footprint;  ///< px per mm: the largest of the pixels times k, or if flat that of the tilted surface
+  Shape shape;
+  Bounded footprint;  ///< px per mm: the largest of the pixels times k, or unless curved that of the tilted surface
 };
 
 class Cells {
@@ -69,11 +72,23 @@ class Cells {
     double high_ = 0;
   };
 
+  static constexpr std::size_t most_materials = 127;
+  using MaterialSet = std::bitset<most_materials>;
+
   struct Cell {
     Range depth_mm;
     std::array<Range, 2> step_mm;  ///< change of depth to the next pixel of the same material, along x and along y
     std::array<Largest, 2> footprint;
-    Largest radius_mm;
+    MaterialSet scatters;          ///< some pixel has a wide kernel of that material
+    MaterialSet surely_scatters;   ///< on any device
+    MaterialSet perhaps_scatters;  ///< on some
+  };
+
+  /// How far around a cell its pixels' surroundings are looked at.
+  struct Reach {
+    int nominal_px;
+    int least_px;  ///< of a device
+    int most_px;
   };
 
   /// A decision: what it is, and whether a device may decide otherwise.
@@ -84,14 +99,18 @@ class Cells {
 
   struct Surroundings;
 
-  void add_pixel(Cell& cell, int x, int y, std::span<const Material> materials) const;
+  void add_pixel(Cell& cell, int x, int y) const;
+  Reach reach(Axis axis, const Cell& cell) const;
   const Cell& at(int column, int row) const { return cells_[static_cast<std::size_t>(row) * columns_ + column]; }
   Surroundings surroundings(Axis axis, int column, int row, int reach_cells) const;
+  struct Variation;
+  Variation variation(Axis axis, int column, int row, const Range& depth_mm, const Range& step_mm) const;
   void add_kinds(Axis axis, int column, int row, int reach_cells, std::vector<CellKind>& kinds) const;
   static Decision is_at_most(Bounded a, Bounded b);
   static Decision both(Decision a, Decision b);
 
   const Surface& surface_;
+  std::span<const Material> materials_;
   bool may_be_flat_;
   int columns_;
   int rows_;

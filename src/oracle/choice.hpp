@@ -11,7 +11,8 @@ namespace dermis::oracle {
 
 /// How a pass sums at a pixel.
 struct Way {
-  int flat_part;  ///< of the rung, whose weights of a flat cell are taken; -1: the cell is not flat, or has no taps
+  Shape shape;    ///< of the cell
+  int flat_part;  ///< of the rung, whose weights are taken on a flat cell; 0 elsewhere
   int rung;       ///< -1: the kernel is too narrow for taps
   int rotated;    ///< how many of the rung's pairs, the innermost first
 

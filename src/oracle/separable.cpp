@@ -73,7 +73,8 @@ class Pass {
   Outcome without_taps(int x, int y) const;
   Outcome with_taps(int x, int y, const Way& way);
   void add_center(int x, int y, const TapWeights& weights);
-  void add_tap(int x, int y, int tap_x, int tap_y, const TapWeights& weights, std::size_t pair);
+  void add(std::size_t term, int c, const WeightParts& parts, int x, int y);
+  void add_tap(int x, int y, PixelOffset offset, int side, const TapWeights& weights, std::size_t pair);
   Outcome finished(const Outcome& values, std::span<const Term> terms) const;
 
   Axis axis_;
@@ -146,7 +147,7 @@ Outcome Pass::with_taps(int x, int y, const Way& way) {
   const SurfacePixel& pixel = surface_.at(x, y);
   const Taps& taps = materials_[pixel.material].taps;
   const Rung& rung = taps.rungs[way.rung];
-  const TapWeights weights(axis_, pixel, taps, rung, way.flat_part);
+  const TapWeights weights(axis_, surface_, x, y, taps, way);
   sums_.resize(taps.terms.size());
   for (auto& sum : sums_) {
     for (WeightedSum& channel : sum) channel.clear();
@@ -157,8 +158,7 @@ Outcome Pass::with_taps(int x, int y, const Way& way) {
     PixelOffset offset{0, 0};
     offset[axis_] = rung.offsets_px[i];
     if (static_cast<int>(i) < way.rotated) offset = turned.offset(rung.offsets_px[i]);
-    add_tap(x, y, x + offset[0], y + offset[1], weights, i);
-    add_tap(x, y, x - offset[0], y - offset[1], weights, i);
+    for (const int side : {1, -1}) add_tap(x, y, offset, side, weights, i);
   }
   Outcome values;
   for (std::size_t t = 0; t < taps.terms.size(); ++t) {
@@ -177,17 +177,25 @@ void Pass::add_center(int x, int y, const TapWeights& weights) {
   const std::span<const Term> terms = terms_of(x, y);
   for (std::size_t t = 0; t < terms.size(); ++t) {
     if (!terms[t].normalised) continue;
-    for (int c = 0; c < 3; ++c) sums_[t][c].add(weights.center(t, c), inputs_[t].at(x, y, c));
+    for (int c = 0; c < 3; ++c) add(t, c, weights.center(t, c), x, y);
   }
 }
 
-void Pass::add_tap(int x, int y, int tap_x, int tap_y, const TapWeights& weights, std::size_t pair) {
+void Pass::add(std::size_t term, int c, const WeightParts& parts, int x, int y) {
+  for (const Bounded& part : parts) {
+    if (!is_exactly(part, 0)) sums_[term][c].add(part, inputs_[term].at(x, y, c));
+  }
+}
+
+void Pass::add_tap(int x, int y, PixelOffset offset, int side, const TapWeights& weights, std::size_t pair) {
+  const int tap_x = x + side * offset[0];
+  const int tap_y = y + side * offset[1];
   if (!surface_.shows(surface_.at(x, y).material, tap_x, tap_y)) return;
   const SurfacePixel& tap = surface_.at(tap_x, tap_y);
   if (!tap.gives_light()) return;
-  const TapWeights::Place place = weights.place(tap);
+  const TapWeights::Place place = weights.place(tap, side);
   for (std::size_t t = 0; t < sums_.size(); ++t) {
-    for (int c = 0; c < 3; ++c) sums_[t][c].add(weights.tap(place, pair, t, c), inputs_[t].at(tap_x, tap_y, c));
+    for (int c = 0; c < 3; ++c) add(t, c, weights.tap(place, pair, t, c), tap_x, tap_y);
   }
 }
 

@@ -121,21 +121,56 @@ Surface::Surface(const Frame& frame, const FrameImages& images, std::span<const 
   }
 }
 
-Bounded Surface::depth_slope(int x, int y, Axis axis) const {
+/// To the neighbours of the same material along an axis, mm; where there is only one, both are the difference to it.
+struct Surface::DepthSteps {
+  bool has_previous, has_next;
+  Bounded backward, forward;
+};
+
+Surface::DepthSteps Surface::depth_steps(int x, int y, Axis axis) const {
   const int dx = axis == horizontal ? 1 : 0;
   const int dy = 1 - dx;
   const SurfacePixel& pixel = at(x, y);
-  const bool has_next = shows(pixel.material, x + dx, y + dy);
-  const bool has_previous = shows(pixel.material, x - dx, y - dy);
+  DepthSteps steps{shows(pixel.material, x - dx, y - dy), shows(pixel.material, x + dx, y + dy), exact(0), exact(0)};
   const Bounded z = pixel.position_mm[2];
-  const Bounded forward = has_next ? at(x + dx, y + dy).position_mm[2] - z : exact(0);
-  const Bounded backward = has_previous ? z - at(x - dx, y - dy).position_mm[2] : exact(0);
-  if (!has_next) return backward;
-  if (!has_previous) return forward;
+  if (steps.has_next) steps.forward = at(x + dx, y + dy).position_mm[2] - z;
+  if (steps.has_previous) steps.backward = z - at(x - dx, y - dy).position_mm[2];
+  if (!steps.has_next) steps.forward = steps.backward;
+  if (!steps.has_previous) steps.backward = steps.forward;
+  return steps;
+}
+
+Bounded Surface::depth_slope(int x, int y, Axis axis) const {
+  const auto [has_previous, has_next, backward, forward] = depth_steps(x, y, axis);
+  if (!has_previous || !has_next) return forward;
   // Continuous in both, so that a device that decides otherwise is off by no more than its differences are.
   const Bounded smaller = std::abs(forward.value) < std::abs(backward.value) ? forward : backward;
   const bool same_sign = (forward.value > 0) == (backward.value > 0);
   return {same_sign ? smaller.value : 0, std::max(forward.error, backward.error)};
+}
+
+// T = (size + ray g, ray' g, g) along x; its change per pixel is (2 size' g + ray h, ray' h, h), where g and h are the
+// first and the second difference of depth, and size' = the change of the ray per pixel.
+Bend Surface::bend(int x, int y, Axis axis, float footprint) const {
+  const SurfacePixel& pixel = at(x, y);
+  const DepthSteps steps = depth_steps(x, y, axis);
+  const Bounded g = exact(0.5) * (steps.forward + steps.backward);
+  const Bounded h = steps.forward - steps.backward;
+  Bounded length2 = g * g;
+  Bounded growth = g * h;
+  for (const Axis i : {horizontal, vertical}) {
+    const Bounded ray = view_.is_perspective() ? pixel.position_mm[i] / pixel.position_mm[2] : exact(0);
+    Bounded change = ray * g;
+    Bounded change_of_change = ray * h;
+    if (i == axis) {
+      change = change + view_.size_mm(i, pixel.position_mm[2]);
+      change_of_change = change_of_change + exact(2) * view_.growth_mm(i, g);
+    }
+    length2 = length2 + change * change;
+    growth = growth + change * change_of_change;
+  }
+  const Bounded square = exact(footprint) * exact(footprint);
+  return {square * rounded(length2, 2) - exact(1), square * rounded(growth, 2)};
 }
 
 // The change of position with one pixel: the pixel's size along the axis, and the ray's run over the change of depth.

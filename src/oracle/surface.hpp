@@ -30,6 +30,13 @@ struct SurfacePixel {
   bool takes_light_unsure() const { return wide_unsure && !bad; }
 };
 
+/// How a surface differs about a pixel from a plane parallel to the screen of some footprint: q and k of Taps, before they
+/// are held within bounds.
+struct Bend {
+  Bounded stretch;
+  Bounded skew;
+};
+
 class Surface {
  public:
   /// Throws Error(usage) if there is no material, or several and no material ids, Error(role_missing) if a width
@@ -51,10 +58,14 @@ class Surface {
   /// material, 0 if they differ in sign.
   Bounded depth_slope(int x, int y, Axis axis) const;
 
+  Bend bend(int x, int y, Axis axis, float footprint) const;
+
   /// 1 channel: 1 where a pixel takes light.
   Picture touched() const;
 
  private:
+  struct DepthSteps;
+  DepthSteps depth_steps(int x, int y, Axis axis) const;
   Bounded segment(int x, int y, Axis axis) const;
 
   int width_;

@@ -1,6 +1,7 @@
 // Materials and frames that show which cells are flat.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <functional>
@@ -15,8 +16,15 @@
 
 namespace dermis::oracle {
 
-/// A kernel of `radius_mm` with one pair of taps, on the neighbours, on every rung. On flat cells they are worth
-/// 1/8 + the number of the rung / 1024 each; on others nothing, as they have no length.
+/// What a rung has on a smooth cell as its number.
+constexpr int smooth = 1536;
+
+/// The kernel radius where a rung begins, px.
+inline double first_radius_px(int rung) { return std::ldexp(0.5 * (1 + rung % 16 / 16.0), rung / 16); }
+
+/// A kernel of `radius_mm` with a pair of taps on the neighbours, on every rung. On flat cells they are worth 1/8 + the
+/// number of the rung / 1024 each, on smooth ones 3/2 more, on others nothing, as they have no length. Another pair, as
+/// far away as the kernel goes, is worth nothing at all.
 inline Material telling_material(double radius_mm, int id = 0) {
   Material material;
   material.id = id;
@@ -24,9 +32,14 @@ inline Material telling_material(double radius_mm, int id = 0) {
   material.taps.relative_width = {1, 1, 1};
   material.taps.terms.push_back(tiny_term(0.25, 0.5));
   for (int i = 0; i < 8 * 16; ++i) {
-    material.taps.rungs.push_back(made_rung(1, {1}, 0));
-    lay_flat(material.taps.rungs.back(), material.taps.terms,
-             [&](std::size_t, std::size_t, std::size_t) { return 0.125 + i / 1024.0; });
+    // The pixels are all larger than those of the rungs, by as much as counts.
+    material.taps.rungs.push_back(made_rung(100, {1, std::max(2, static_cast<int>(first_radius_px(i)))}, 0));
+    Rung& rung = material.taps.rungs.back();
+    const auto on_neighbours = [](double weight) {
+      return [=](std::size_t pair, std::size_t, std::size_t) { return pair == 0 ? weight : 0; };
+    };
+    lay_flat(rung, material.taps.terms, on_neighbours(0.125 + i / 1024.0));
+    lay_smooth(rung, 1, on_neighbours(1.5 / static_cast<double>(Taps::most_stretch)), on_neighbours(0));
   }
   return material;
 }
@@ -49,7 +62,8 @@ inline void light_squares(MadeFrame& made, bool down) {
   }
 }
 
-/// The rung of the flat cell in which a pixel lies, as told by the light of squares; not_flat if it keeps its light.
+/// The rung of the flat or smooth cell in which a pixel lies, as told by the light of squares; not_flat if it keeps its
+/// light.
 /// Both neighbours must be of the same material.
 inline int told(const Reference& reference, int x, int y, bool down) {
   const double place = down ? y : x;

@@ -74,7 +74,7 @@ TEST_CASE("the change of position under a perspective camera by hand", "[flat]")
 }
 
 TEST_CASE("a step is not flat within reach, and flat beyond", "[flat]") {
-  // Cells that lie at least partly within ceil(radius) pixels of a cell count with it.
+  // Cells that lie at least partly within 9/8 of the farthest tap of a cell count with it: 5, 16, 18 and 37 px.
   using Cells = std::set<int>;
   CHECK(flat_cells(step(96, 50, 0), telling_material(5)) == Cells{0, 1, 2, 3, 4, 5});
   CHECK(flat_cells(step(96, 50, 10), telling_material(5)) == Cells{0, 1, 5});
@@ -106,10 +106,24 @@ TEST_CASE("how much the depth may vary", "[flat]") {
   const Material material = telling_material(5);
   CHECK(first_rung(step(16, 8, 0.19), material) == rung_for(5 / std::hypot(1, 0.095)));
   CHECK(first_rung(step(16, 8, 0.2), material) == rung_for(5 / std::hypot(1, 0.1)));
-  CHECK(first_rung(step(16, 8, 0.203), material) == not_flat);
+  CHECK(first_rung(step(16, 8, 0.203), material) == smooth + rung_for(5 / std::hypot(1, 0.1015)));
+  // Smooth if D^2 / 4 <= 16 (1 + D^2 / 4) / 100.
+  CHECK(first_rung(step(16, 8, 0.87), material) == smooth + rung_for(5 / std::hypot(1, 0.435)));
+  CHECK(first_rung(step(16, 8, 0.88), material) == not_flat);
   // Depth that is tilted either way.
   CHECK(first_rung(row_of_cells(16, [](int x) { return 0.099 * std::abs(x - 8); }), material) == rung_for(5));
-  CHECK(first_rung(row_of_cells(16, [](int x) { return 0.101 * std::abs(x - 8); }), material) == not_flat);
+  CHECK(first_rung(row_of_cells(16, [](int x) { return 0.101 * std::abs(x - 8); }), material) == smooth + rung_for(5));
+  CHECK(first_rung(row_of_cells(16, [](int x) { return 0.399 * std::abs(x - 8); }), material) == smooth + rung_for(5));
+  CHECK(first_rung(row_of_cells(16, [](int x) { return 0.401 * std::abs(x - 8); }), material) == not_flat);
+}
+
+TEST_CASE("a smooth cell has the rung of its own middle", "[flat]") {
+  // Slopes 0 and 0.3 in two cells; within reach of each they vary by 0.3.
+  const MadeFrame made = row_of_cells(32, [](int x) { return x < 16 ? 0 : 0.3 * (x - 16); });
+  const Material material = telling_material(5);
+  const Reference reference = run_as_is(made, std::span(&material, 1));
+  CHECK(told(reference, 6, 2, false) == smooth + rung_for(5));
+  CHECK(told(reference, 24, 2, false) == smooth + rung_for(5 / std::hypot(1, 0.3)));
 }
 
 TEST_CASE("surfaces of two materials one behind the other are a step", "[flat]") {
@@ -160,16 +174,20 @@ TEST_CASE("the bound admits that a cell is flat or not where float32 cannot tell
   const auto bound = [](const MadeFrame& made, const Material& its, int x) {
     return run_as_is(made, std::span(&its, 1)).scattered_bound(x, 2);
   };
-  const double f2 = static_cast<double>(Taps::flatness) * static_cast<double>(Taps::flatness);
-  const double just = 2 * std::sqrt(f2 / (1 - f2));
+  const auto largest_step = [](float share) { return 2 * share / std::sqrt(1 - static_cast<double>(share) * share); };
+  const double just = largest_step(Taps::flatness);
   const auto at_zero = [](double by_mm) {  // about 0, where float32 is finest
     return row_of_cells(16, [=](int x) { return x < 8 ? 0 : by_mm; });
   };
-  const double taken = 2 * (0.125 + rung_for(5 / std::hypot(1, 0.1)) / 1024.0);
-  CHECK(bound(at_zero(just), material, 4) == Approx(taken).epsilon(1e-3));
+  CHECK(bound(at_zero(just), material, 4) == Approx(2 * 1.5).epsilon(1e-3));
   CHECK(bound(at_zero(just * 0.9999), material, 4) < 1e-4);
-  CHECK(bound(at_zero(just * 1.0001), material, 4) < 1e-4);
-  // A reach of 16 pixels, or of a little more: 17.
+  CHECK(bound(at_zero(just * 1.0001), material, 4) < 3e-4);
+  const double just_smooth = largest_step(Taps::smoothness);
+  const double taken = 2 * (1.5 + 0.125 + rung_for(5 / std::hypot(1, just_smooth / 2)) / 1024.0);
+  CHECK(bound(at_zero(just_smooth), material, 4) == Approx(taken).epsilon(1e-3));
+  CHECK(bound(at_zero(just_smooth * 0.9999), material, 4) < 3e-4);
+  CHECK(bound(at_zero(just_smooth * 1.0001), material, 4) < 1e-4);
+  // A reach of 16 pixels, or of 18.
   CHECK(bound(step(96, 50, 10), telling_material(16), 24) > 0.2);
   CHECK(bound(step(96, 50, 10), telling_material(15.9), 24) < 1e-3);
   CHECK(bound(step(96, 50, 10), telling_material(16.1), 24) < 1e-3);

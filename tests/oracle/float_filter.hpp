@@ -2,6 +2,7 @@
 // oracle's bounds.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
@@ -43,15 +44,18 @@ class FloatFilter {
   std::vector<float> result;
 
   /// Of both passes.
-  int flat_cells() const {
+  int flat_cells() const { return count(&FloatCell::flat); }
+  int smooth_cells() const { return count(&FloatCell::smooth); }
+
+ private:
+  int count(bool FloatCell::*shape) const {
     int count = 0;
     for (const FloatCells& pass : cells_) {
-      for (const FloatCell& cell : pass.cells) count += cell.flat ? 1 : 0;
+      for (const FloatCell& cell : pass.cells) count += cell.*shape ? 1 : 0;
     }
     return count;
   }
 
- private:
   float albedo(std::size_t i) const { return made_.albedo.empty() ? 1 : made_.albedo[i]; }
   bool raw() const { return options_.lighting == dermis::Lighting::raw; }
   float mix() const { return static_cast<float>(options_.albedo_mix); }
@@ -67,13 +71,6 @@ class FloatFilter {
     }
     const auto& [a, b, bend] = table.coefficients[c];
     return multiply_add(t, multiply_add(t, bend[octave], b[octave]), a[octave]);
-  }
-
-  /// Eighths of rungs.
-  static std::size_t step_of(float radius_px, bool flat, const dermis::Taps& taps) {
-    const std::uint32_t bits = std::bit_cast<std::uint32_t>(radius_px) - std::bit_cast<std::uint32_t>(0.5F);
-    const std::uint32_t steps = (bits + (flat ? 1U << 15 : 0)) >> (23 - 7);
-    return std::min<std::size_t>(steps, 8 * taps.rungs.size() - 1);
   }
 
   std::array<int, 2> turned(int axis, int x, int y, int offset) const {
@@ -133,19 +130,23 @@ class FloatFilter {
     const dermis::Term& term = taps.terms[t];
     const FloatCell& cell = cells_[static_cast<std::size_t>(axis)].at(x, y);
     const float radius_mm = static_cast<float>(taps.radius_mm);
-    const float radius_px = cell.flat ? radius_mm / cell.change_mm : cell.footprint * radius_mm;
+    const bool plane = cell.flat || cell.smooth;
+    const float radius_px = plane ? radius_mm / cell.change_mm : cell.footprint * radius_mm;
     for (std::size_t c = 0; c < 3; ++c) {
       const float own = input[3 * p + c];
       if (!pixel.touched() || radius_px < 0.5F) {
         output[c] = term.normalised ? own : term.sum[c] * own;
         continue;
       }
-      const std::size_t step = step_of(radius_px, cell.flat, taps);
+      const int step = float_step(radius_px, cell.flat, taps);
       const dermis::Rung& rung = taps.rungs[step / 8];
-      const auto& flat_weights = rung.flat_weights[step % 8];
+      const auto& flat_weights = rung.flat_weights[cell.flat ? step % 8 : 4];
+      const FloatBend bend = cell.smooth ? bend_at(axis, x, y, rung) : FloatBend{};
       float weights = 0;
       if (term.normalised && cell.flat) {
         weights = flat_weights[t][c];
+      } else if (term.normalised && cell.smooth) {
+        weights = multiply_add(bend.stretch, rung.stretch_weights[t][c], flat_weights[t][c]);
       } else if (term.normalised) {
         const float half_width = rung.core_half_width_px * pixel.segment[axis] / pixel.k[c];
         weights = rung.core_gain[t][c] * look_up(term.core, c, half_width * half_width);
@@ -164,8 +165,13 @@ class FloatFilter {
           if (tx < 0 || ty < 0 || tx >= made_.width || ty >= made_.height) continue;
           const std::size_t q = static_cast<std::size_t>(ty) * made_.width + tx;
           if (pixels_[q].material != pixel.material || pixels_[q].bad) continue;
-          const float weight =
-              cell.flat ? flat_weights[(i + 1) * taps.terms.size() + t][c] : weigh(axis, p, q, rung, i, t, c);
+          const std::size_t at = (i + 1) * taps.terms.size() + t;
+          float weight = plane ? flat_weights[at][c] : weigh(axis, p, q, rung, i, t, c);
+          if (cell.smooth) {
+            weight = multiply_add(bend.stretch, rung.stretch_weights[at][c], weight);
+            const float skew = static_cast<float>(sign) * bend.skew;
+            weight = multiply_add(skew, rung.skew_weights[i * taps.terms.size() + t][c], weight);
+          }
           const float light = input[3 * q + c];
           weights += weight;
           sum = multiply_add(weight, about_own ? light - own : light, sum);
@@ -177,6 +183,46 @@ class FloatFilter {
         output[c] = multiply_add(about_own ? term.sum[c] : term.sum[c] - weights, own, sum);
       }
     }
+  }
+
+  struct FloatBend {
+    float stretch = 0;
+    float skew = 0;
+  };
+
+  FloatBend bend_at(int axis, int x, int y, const dermis::Rung& rung) const {
+    const int place[2] = {x, y};
+    const int size[2] = {made_.width, made_.height};
+    const int next = axis == 0 ? 1 : made_.width;
+    const int p = y * made_.width + x;
+    const FloatPixel& pixel = pixels_[static_cast<std::size_t>(p)];
+    const auto shows = [&](int at) { return pixels_[static_cast<std::size_t>(at)].material == pixel.material; };
+    const auto z = [&](int at) { return pixels_[static_cast<std::size_t>(at)].position[2]; };
+    const bool has_before = place[axis] > 0 && shows(p - next);
+    const bool has_after = place[axis] + 1 < size[axis] && shows(p + next);
+    float before = has_before ? z(p) - z(p - next) : 0;
+    float after = has_after ? z(p + next) - z(p) : 0;
+    if (!has_before) before = after;
+    if (!has_after) after = before;
+    const float slope = (before + after) / 2;
+    const float bent = after - before;
+    const bool perspective = made_.camera.projection == dermis::Camera::Projection::perspective;
+    float length2 = slope * slope;
+    float growth = slope * bent;
+    for (int j = 0; j < 2; ++j) {
+      const float ray = perspective ? pixel.position[j] / pixel.position[2] : 0;
+      float change = ray * slope;
+      float change_of_change = ray * bent;
+      if (j == axis) {
+        change += 1 / pixel.footprint[j];
+        if (perspective) change_of_change += 2 * slope / (pixel.footprint[j] * pixel.position[2]);
+      }
+      length2 = multiply_add(change, change, length2);
+      growth = multiply_add(change, change_of_change, growth);
+    }
+    const float square = rung.footprint * rung.footprint;
+    const float most = rung.offsets_px.empty() ? 0 : 0.5F / static_cast<float>(rung.offsets_px.back());
+    return {std::clamp(square * length2 - 1, -0.75F, 0.75F), std::clamp(square * growth, -most, most)};
   }
 
   float weigh(int axis, std::size_t p, std::size_t q, const dermis::Rung& rung, std::size_t pair, std::size_t t,

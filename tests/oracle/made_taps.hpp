@@ -23,15 +23,17 @@ inline double gaussian_line(double r_mm, double sigma_mm) {
 /// One term, pairs of taps of the same length. Flat weights are still to be laid.
 inline dermis::Rung made_rung(double px_per_mm, const std::vector<int>& offsets_px, double length_mm) {
   const dermis::TapWeight weight{grey(length_mm), {}};
-  return {static_cast<float>(px_per_mm), 0.5F, {grey(1)}, offsets_px, {offsets_px.size(), weight}, {}};
+  return {static_cast<float>(px_per_mm), 0.5F, {grey(1)}, offsets_px, {offsets_px.size(), weight}, {}, {}, {}};
 }
 
 inline double flat_quantum(double weight) { return std::round(weight * 0x1p24) * 0x1p-24; }
 
+/// A number for each pair in a term and a channel.
+using PairNumber = std::function<double(std::size_t pair, std::size_t term, std::size_t c)>;
+
 /// Gives a rung flat weights: those of the pairs in a term and a channel; the centre's make up the sum of 1, or are
-/// nonsense where they count nothing.
-inline void lay_flat(dermis::Rung& rung, const std::vector<dermis::Term>& terms,
-                     const std::function<double(std::size_t pair, std::size_t term, std::size_t c)>& weight) {
+/// nonsense where they count nothing. A surface that bends changes nothing.
+inline void lay_flat(dermis::Rung& rung, const std::vector<dermis::Term>& terms, const PairNumber& weight) {
   std::vector<std::array<float, 3>> weights((1 + rung.offsets_px.size()) * terms.size());
   for (std::size_t t = 0; t < terms.size(); ++t) {
     for (std::size_t c = 0; c < 3; ++c) {
@@ -45,27 +47,54 @@ inline void lay_flat(dermis::Rung& rung, const std::vector<dermis::Term>& terms,
     }
   }
   rung.flat_weights.fill(weights);  // of every part
+  rung.stretch_weights.assign(weights.size(), {});
+  rung.skew_weights.assign(rung.offsets_px.size() * terms.size(), {});
+}
+
+/// Gives a rung what its flat weights change by on a smooth cell.
+inline void lay_smooth(dermis::Rung& rung, std::size_t terms, const PairNumber& stretch, const PairNumber& skew) {
+  for (std::size_t t = 0; t < terms; ++t) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      double pairs = 0;
+      for (std::size_t pair = 0; pair < rung.offsets_px.size(); ++pair) {
+        const double own = std::round(stretch(pair, t, c) * 0x1p20) * 0x1p-20;
+        rung.stretch_weights[(1 + pair) * terms + t][c] = static_cast<float>(own);
+        rung.skew_weights[pair * terms + t][c] = static_cast<float>(skew(pair, t, c));
+        pairs += 2 * own;
+      }
+      rung.stretch_weights[t][c] = static_cast<float>(-pairs);
+    }
+  }
 }
 
 /// Gives all rungs the flat weights that the others are on a plane parallel to the screen whose pixels have the rung's
-/// footprint.
+/// footprint, and what these change by if the pixels are larger.
 inline void lay_flat(dermis::Taps& taps) {
   for (dermis::Rung& rung : taps.rungs) {
-    const double pixel_mm = 1 / static_cast<double>(rung.footprint);
-    const std::function<double(std::size_t, std::size_t, std::size_t)> tap = [&](std::size_t pair, std::size_t t,
-                                                                                 std::size_t c) {
-      const dermis::TapWeight& weight = rung.weights[pair * taps.terms.size() + t];
-      const double r_mm = rung.offsets_px[pair] * pixel_mm;
-      const double own = static_cast<double>(weight.length_mm[c]) * value_of(taps.terms[t].falloff, c, r_mm * r_mm);
-      return t == 0 ? own : own + static_cast<double>(weight.share[c]) * tap(pair, 0, c);
-    };
-    lay_flat(rung, taps.terms, [&](std::size_t pair, std::size_t t, std::size_t c) {
-      if (!taps.terms[t].normalised) return tap(pair, t, c);
-      const double r_mm = static_cast<double>(rung.core_half_width_px) * pixel_mm;
+    // Of a tap where lengths and distances are `longer`.
+    const std::function<double(std::size_t, std::size_t, std::size_t, double)> tap =
+        [&](std::size_t pair, std::size_t t, std::size_t c, double longer) {
+          const dermis::TapWeight& weight = rung.weights[pair * taps.terms.size() + t];
+          const double r_mm = longer * rung.offsets_px[pair] / static_cast<double>(rung.footprint);
+          const double own =
+              longer * static_cast<double>(weight.length_mm[c]) * value_of(taps.terms[t].falloff, c, r_mm * r_mm);
+          return t == 0 ? own : own + static_cast<double>(weight.share[c]) * tap(pair, 0, c, longer);
+        };
+    const auto share = [&](std::size_t pair, std::size_t t, std::size_t c, double longer) {
+      if (!taps.terms[t].normalised) return tap(pair, t, c, longer);
+      const double r_mm =
+          longer * static_cast<double>(rung.core_half_width_px) / static_cast<double>(rung.footprint);
       double sum = static_cast<double>(rung.core_gain[t][c]) * value_of(taps.terms[t].core, c, r_mm);
-      for (std::size_t i = 0; i < rung.offsets_px.size(); ++i) sum += 2 * tap(i, t, c);
-      return tap(pair, t, c) / sum;
-    });
+      for (std::size_t i = 0; i < rung.offsets_px.size(); ++i) sum += 2 * tap(i, t, c, longer);
+      return tap(pair, t, c, longer) / sum;
+    };
+    lay_flat(rung, taps.terms, [&](std::size_t pair, std::size_t t, std::size_t c) { return share(pair, t, c, 1); });
+    lay_smooth(
+        rung, taps.terms.size(),
+        [&](std::size_t pair, std::size_t t, std::size_t c) {
+          return (share(pair, t, c, std::sqrt(1.2)) - share(pair, t, c, std::sqrt(0.8))) / 0.4;
+        },
+        [](std::size_t, std::size_t, std::size_t) { return 0; });
   }
 }
 

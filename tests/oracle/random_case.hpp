@@ -43,6 +43,10 @@ inline void lay_random_flat(Random& random, Taps& taps) {
     lay_flat(rung, taps.terms, [&](std::size_t, std::size_t t, std::size_t) {
       return random.uniform(taps.terms[t].normalised ? 0 : -1, 1) / taps_of_rung;  // weights of a mean do not cancel
     });
+    const PairNumber any = [&](std::size_t, std::size_t, std::size_t) {
+      return random.uniform(-0.2, 0.2) / taps_of_rung;
+    };
+    lay_smooth(rung, taps.terms.size(), any, any);
   }
 }
 
@@ -86,7 +90,7 @@ inline void add_depth(Random& random, MadeFrame& made, double distance_mm, doubl
   const double slope_x = random.coin() ? random.uniform(-1, 1) * largest_slope : 0;
   const double slope_y = random.coin() ? random.uniform(-1, 1) * largest_slope : 0;
   const double bend = random.coin() ? random.uniform(0, 1) * largest_slope / longest_px : 0;
-  const double roughness[] = {0, 0.01, 0.05, 0.1, 1};
+  const double roughness[] = {0, 0.01, 0.1, 0.3, 1};
   const double rough_mm = roughness[random.integer(0, 4)] * pixel_mm;
   const double step_mm = random.coin() ? random.uniform(0, 3) * pixel_mm : 0;
   const int step_at = random.integer(0, made.width);

@@ -41,9 +41,9 @@ TEST_CASE("the passes compose: across, then down", "[separable]") {
 
 TEST_CASE("depth lengthens distances and the surface under a pixel", "[separable]") {
   MadeFrame made = three_pixels();
-  made.depth = {0, std::sqrt(0.5F), 2};  // r^2 = 1.5 to the left, 2.67 to the right
+  made.depth = {std::sqrt(0.5F), 0, 1.25F};  // r^2 = 1.5 to the left, 2.56 to the right
   const double low = static_cast<double>(std::sqrt(0.5F));
-  const double step = 2 - low;
+  const double step = 1.25;
   const Material material = tiny_material();
   const RadialTable& falloff = material.taps.terms[0].falloff;
   const double left = value_of(falloff, 0, 1.5) * std::hypot(1, low);
