@@ -9,15 +9,25 @@ kernel void finish(struct FrameParams f, global const uchar* surface, global con
                    global const uchar* beauty, struct ImageParams beauty_at, global uchar* scattered,
                    struct ImageParams scattered_at, int writes_scattered, global uchar* result,
                    struct ImageParams result_at, int writes_result, int zeroes_bad, int copies,
-                   global const float* held, global const uchar* kinds, int columns) {
+                   global const float* held, global const uchar* kinds, global const struct CellPasses* passes,
+                   int columns) {
   const Inputs in = {light, albedo, 0, 0, light_at, albedo_at, light_at, light_at, surface};
   const Outputs out = {beauty,    scattered,        result,        beauty_at, scattered_at,
                        result_at, writes_scattered, writes_result, zeroes_bad};
   const int y = get_global_id(1);
   const InputRows rows = input_rows(&f, &in, y);
   const int x_begin = (int)get_global_id(0) * columns;
-  for (int x = x_begin; x < min(x_begin + columns, f.width); x += V) {
-    if (!copies && kinds[y / f.tile_height * f.tiles_x + x / f.tile_width] < TILE_UNLIT) continue;
-    compose(&f, &in, &rows, &out, load_rgb(held, (size_t)f.stride * f.height, surface_at(&f, x, y)), 0, x, y);
+  const int x_end = min(x_begin + columns, f.width);
+  global const uchar* kinds_of_row = kinds + y / f.tile_height * f.tiles_x;
+  global const struct CellPasses* passes_of_row = passes + y / CELL * f.cells_x;
+  int next = x_begin;
+  for (int begin = x_begin; begin < x_end; begin = next) {
+    const int tile = copies ? 0 : begin / f.tile_width;
+    next = copies ? x_end : min((tile + 1) * f.tile_width, x_end);
+    if (!copies && kinds_of_row[tile] < TILE_UNLIT) continue;
+    for (int x = begin; x < next; x += V) {
+      if (!copies && passes_of_row[x / CELL].x.shape == SHAPE_EMPTY) continue;
+      compose(&f, &in, &rows, &out, load_rgb(held, (size_t)f.stride * f.height, surface_at(&f, x, y)), 0, x, y);
+    }
   }
 }

@@ -21,16 +21,6 @@ SHARED float value_at(global const uchar* at, int format) {
   }
 }
 
-static inline void write_value(global uchar* image, const struct ImageParams* p, int x, int y, int channel,
-                               float value) {
-  global uchar* at = image + byte_at(p, x, y, channel);
-  if (p->format == FORMAT_F16) {
-    vstore_half_rte(value, 0, (global half*)at);
-  } else {
-    *(global float*)at = value;
-  }
-}
-
 #if V > 1
 // V halves that are not side by side.
 SHARED vfloat read_half_lanes(global const uchar* at, int pixel_stride) {
@@ -127,39 +117,60 @@ SHARED vrgb read_any_rgb(const RgbRow* row, int x) {
   return value;
 }
 
+// V pixels in the frame, of planes of floats.
+FORCED_INLINE vrgb read_planar_rgb(const RgbRow* row, int x) {
+  const vrgb value = {load_floats((global const float*)row->r.at + x), load_floats((global const float*)row->g.at + x),
+                      load_floats((global const float*)row->b.at + x)};
+  return value;
+}
+
 FORCED_INLINE vrgb read_rgb(const RgbRow* row, int x) {
 #if V > 1
-  if (row->planar && x >= 0 && x + V <= row->r.width) {
-    const vrgb value = {load_floats((global const float*)row->r.at + x),
-                        load_floats((global const float*)row->g.at + x),
-                        load_floats((global const float*)row->b.at + x)};
-    return value;
-  }
+  if (row->planar && x >= 0 && x + V <= row->r.width) return read_planar_rgb(row, x);
 #endif
   return read_any_rgb(row, x);
+}
+
+// Writes the lanes where the mask is set, one by one, the first at `at`. Loops, as 48 times the code is built late.
+SHARED void write_lanes(global uchar* at, int pixel_stride, int format, vfloat value, vint mask) {
+#if V == 1
+  if (!mask) return;
+  if (format == FORMAT_F16) {
+    vstore_half_rte(value, 0, (global half*)at);
+  } else {
+    *(global float*)at = value;
+  }
+#else
+  const int* writes = (const int*)&mask;
+  if (format == FORMAT_F16) {
+    JOIN(ushort, V) bits;
+    JOIN(JOIN(vstore_half, V), _rte)(value, 0, (half*)&bits);
+    const ushort* lane = (const ushort*)&bits;
+#pragma nounroll
+    for (int i = 0; i < V; ++i) {
+      if (writes[i]) *(global ushort*)(at + i * (Bytes)pixel_stride) = lane[i];
+    }
+  } else {
+    const float* lane = (const float*)&value;
+#pragma nounroll
+    for (int i = 0; i < V; ++i) {
+      if (writes[i]) *(global float*)(at + i * (Bytes)pixel_stride) = lane[i];
+    }
+  }
+#endif
 }
 
 // Writes the lanes where the mask is set; x is in the frame.
 FORCED_INLINE void write_values(global uchar* image, const struct ImageParams* p, int x, int y, int channel,
                                 vfloat value, vint mask) {
+  global uchar* at = image + byte_at(p, x, y, channel);
 #if V > 1
   if (p->format == FORMAT_F32 && p->pixel_stride == 4 && !any_bit(~mask)) {
-    global uchar* at = image + byte_at(p, x, y, channel);
-#if __has_builtin(__builtin_nontemporal_store)
-    // Nobody reads an output soon, so it need not be fetched into a cache first.
-    if (((size_t)at & (sizeof(vfloat) - 1)) == 0) {
-      __builtin_nontemporal_store(value, (global vfloat*)at);
-      return;
-    }
-#endif
     *(global unaligned_floats*)at = value;
     return;
   }
 #endif
-#define WRITE_LANE(lane) \
-  if (LANE(mask, lane)) write_value(image, p, x + (0x##lane), y, channel, LANE(value, lane));
-  EACH_LANE(WRITE_LANE)
-#undef WRITE_LANE
+  write_lanes(at, p->pixel_stride, p->format, value, mask);
 }
 
 SHARED void write_rgb(global uchar* image, const struct ImageParams* p, int x, int y, vrgb value, vint mask) {
@@ -171,20 +182,21 @@ SHARED void write_rgb(global uchar* image, const struct ImageParams* p, int x, i
 // Copies the lanes where the mask is set, without touching their bits if the formats are the same.
 SHARED void copy_rgb(global const uchar* from, const struct ImageParams* p, global uchar* to,
                      const struct ImageParams* q, int width, int x, int y, vint mask) {
-  if (p->format == FORMAT_F16 && q->format == FORMAT_F16) {
-    for (int c = 0; c < 3; ++c) {
-      global const uchar* source = from + byte_at(p, x, y, c);
-      global uchar* target = to + byte_at(q, x, y, c);
-#define COPY_LANE(lane)                                                        \
-  if (LANE(mask, lane)) {                                                      \
-    *(global ushort*)(target + (0x##lane) * (Bytes)q->pixel_stride) =          \
-        *(global const ushort*)(source + (0x##lane) * (Bytes)p->pixel_stride); \
-  }
-      EACH_LANE(COPY_LANE)
-#undef COPY_LANE
-    }
-  } else {
+  if (p->format != FORMAT_F16 || q->format != FORMAT_F16) {
     const RgbRow row = rgb_row_of(from, p, width, y);
     write_rgb(to, q, x, y, read_rgb(&row, x), mask);
+    return;
+  }
+  const int* copies = (const int*)&mask;
+#pragma nounroll
+  for (int c = 0; c < 3; ++c) {
+    global const uchar* source = from + byte_at(p, x, y, c);
+    global uchar* target = to + byte_at(q, x, y, c);
+#pragma nounroll
+    for (int i = 0; i < V; ++i) {
+      if (!copies[i]) continue;
+      *(global ushort*)(target + i * (Bytes)q->pixel_stride) =
+          *(global const ushort*)(source + i * (Bytes)p->pixel_stride);
+    }
   }
 }

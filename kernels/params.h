@@ -113,6 +113,7 @@ struct CellPass {
 };
 
 // Shapes of a cell in a pass.
+#define SHAPE_EMPTY -1  // no pixel has a material
 #define SHAPE_FLAT 0
 #define SHAPE_SMOOTH 1
 #define SHAPE_CURVED 2
@@ -129,7 +130,8 @@ struct ChoiceParams {
   int weight;    // index of the first flat or smooth one
 };
 
-// All taps fall on the material of the cell, which has that shape, or they fall on anything.
+// There is nothing, or all taps fall on the material of the cell, which has that shape, or they fall on anything.
+#define WAY_EMPTY SHAPE_EMPTY
 #define WAY_FLAT SHAPE_FLAT
 #define WAY_SMOOTH SHAPE_SMOOTH
 #define WAY_CURVED SHAPE_CURVED

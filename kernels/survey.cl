@@ -11,8 +11,18 @@
 typedef struct {
   vint material;  // as a byte of the plane
   vfloat depth;   // mm; 0 where there is no material
+#if PIXEL_WIDTH
   vrgb k;
+#endif
 } PixelRow;
+
+static inline vrgb width_of(const PixelRow* row) {
+#if PIXEL_WIDTH
+  return row->k;
+#else
+  return same_rgb((vfloat)(1.0f));
+#endif
+}
 
 // 1 + the index of the material with that id, or 0.
 static inline vint find_material(vfloat id, global const struct MaterialParams* materials) {
@@ -31,22 +41,42 @@ typedef struct {
   struct ImageParams albedo_at, depth_at, material_at, mask_at;
 } SurveyInputs;
 
-static inline PixelRow read_row(const struct FrameParams* f, const SurveyInputs* in,
-                                global const struct MaterialParams* materials, int x, int y) {
+// Values of a row that is direct: they are floats side by side, and V of them in the frame.
+FORCED_INLINE vfloat read_row_values(Row row, int x, const int direct) {
+  return direct ? load_floats((global const float*)row.at + x) : read_values(row, x);
+}
+
+static inline int is_direct(const struct FrameParams* f, const SurveyInputs* in, int x) {
+#if PIXEL_WIDTH
+  return 0;
+#endif
+  int direct = x + V <= f->width;
+#if HAS_DEPTH
+  direct = direct && is_planar(&in->depth_at);
+#endif
+#if HAS_MATERIAL
+  direct = direct && is_planar(&in->material_at);
+#endif
+  return direct;
+}
+
+FORCED_INLINE PixelRow read_row(const struct FrameParams* f, const SurveyInputs* in,
+                                global const struct MaterialParams* materials, int x, int y, const int direct) {
   PixelRow row;
   row.material = (vint)(1);
 #if HAS_MATERIAL
-  row.material = find_material(read_values(row_of(in->material, &in->material_at, f->width, y, 0), x), materials);
+  row.material = find_material(read_row_values(row_of(in->material, &in->material_at, f->width, y, 0), x, direct),
+                               materials);
 #endif
-  row.material &= AS_MASK(x + int_lane_numbers() < (vint)(f->width));
+  if (!direct) row.material &= AS_MASK(x + int_lane_numbers() < (vint)(f->width));
   row.depth = (vfloat)(0.0f);
 #if HAS_DEPTH
-  const vfloat units = read_values(row_of(in->depth, &in->depth_at, f->width, y, 0), x);
+  const vfloat units = read_row_values(row_of(in->depth, &in->depth_at, f->width, y, 0), x, direct);
   row.material &= AS_MASK(units < 1e9f) & AS_MASK(units > (f->slope_x > 0.0f ? 0.0f : -INFINITY));
   row.depth = units * f->mm_per_unit;
 #endif
-  row.k = same_rgb((vfloat)(1.0f));
 #if PIXEL_WIDTH
+  row.k = same_rgb((vfloat)(1.0f));
   vfloat mask = (vfloat)(1.0f);
 #if HAS_MASK
   mask = read_values(row_of(in->mask, &in->mask_at, f->width, y, 0), x);
@@ -100,10 +130,10 @@ FORCED_INLINE void widen(Range* range, vfloat value, vint mask) {
 }
 
 static inline float lowest(vfloat v) {
-  const float8 a = fmin(v.lo, v.hi);
-  const float4 b = fmin(a.lo, a.hi);
-  const float2 c = fmin(b.lo, b.hi);
-  return fmin(c.x, c.y);
+  const float8 a = select(v.hi, v.lo, v.lo < v.hi);
+  const float4 b = select(a.hi, a.lo, a.lo < a.hi);
+  const float2 c = select(b.hi, b.lo, b.lo < b.hi);
+  return c.x < c.y ? c.x : c.y;
 }
 
 static inline float highest(vfloat v) { return -lowest(-v); }
@@ -131,116 +161,140 @@ static inline Range without_last(Range a) {
   return range;
 }
 
-// A cell of one material without gaps. Returns whether none of it is narrow; if some is, it has seen nothing.
-static inline int see_whole(Seen* seen, const struct FrameParams* f, global const struct MaterialParams* materials,
-                            int index, const PixelRow* rows, int height) {
-  global const struct MaterialParams* its = materials + index;
-  for (int i = 0; i < height; ++i) {
-    seen->depth.low = lower(seen->depth.low, rows[i].depth);
-    seen->depth.high = higher(seen->depth.high, rows[i].depth);
-  }
+// A row of a cell as if it were of one material without gaps.
+FORCED_INLINE void see_row(Seen* seen, vfloat depth, vfloat above, int is_first) {
+  seen->depth.low = lower(seen->depth.low, depth);
+  seen->depth.high = higher(seen->depth.high, depth);
+#if HAS_DEPTH && !PIXEL_WIDTH && !JITTER
+  const vfloat to_next = depth.s123456789abcdeff - depth;
+  seen->along_x.low = lower(seen->along_x.low, to_next);
+  seen->along_x.high = higher(seen->along_x.high, to_next);
+  if (is_first) return;
+  const vfloat from_above = depth - above;
+  seen->along_y.low = lower(seen->along_y.low, from_above);
+  seen->along_y.high = higher(seen->along_y.high, from_above);
+#endif
+}
+
+// Whether none of such a cell is narrow.
+static inline int is_wide(const Seen* seen, const struct FrameParams* f, global const struct MaterialParams* its) {
   // Sizes grow with depth.
   const float high = highest(seen->depth.high);
   const float coarsest_mm = fmax(fma(high, f->slope_x, f->mm_per_px_x), fma(high, f->slope_y, f->mm_per_px_y));
   const float widest = fmax(fmax(its->relative_width[0], its->relative_width[1]), its->relative_width[2]);
-  if (widest * its->radius_mm < 0.5f * coarsest_mm) return 0;
+  return widest * its->radius_mm >= 0.5f * coarsest_mm;
+}
+
+static inline void finish_wide(Seen* seen, const struct FrameParams* f, int material, int height) {
   seen->size_x = fma(seen->depth.low, (vfloat)(f->slope_x), (vfloat)(f->mm_per_px_x));
   seen->size_y = fma(seen->depth.low, (vfloat)(f->slope_y), (vfloat)(f->mm_per_px_y));
   seen->scattered = (vint)(-height);
-  see_material(seen, index);
-#if HAS_DEPTH && !JITTER
-  for (int i = 0; i < height; ++i) {
-    const vfloat z = rows[i].depth;
-    const vfloat to_next = z.s123456789abcdeff - z;
-    seen->along_x.low = lower(seen->along_x.low, to_next);
-    seen->along_x.high = higher(seen->along_x.high, to_next);
-    if (i == 0) continue;
-    const vfloat from_above = z - rows[i - 1].depth;
-    seen->along_y.low = lower(seen->along_y.low, from_above);
-    seen->along_y.high = higher(seen->along_y.high, from_above);
-  }
+  see_material(seen, material - 1);
   seen->along_x = without_last(seen->along_x);
-#endif
-  return 1;
 }
 
-// Any cell.
-static inline void see_mixed(Seen* seen, const struct FrameParams* f, global const struct MaterialParams* materials,
-                             PixelRow* rows, int height) {
+// A row of any cell. Returns its material with that of narrow pixels marked.
+static inline vint see_mixed_row(Seen* seen, const struct FrameParams* f, global const struct MaterialParams* materials,
+                                 const PixelRow* row, const PixelRow* above) {
   const vint has_next = (vint)(-1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, 0);
   const vfloat nothing = (vfloat)(INFINITY);
-  vint above_material = (vint)(0);
-  vfloat above_depth = (vfloat)(0.0f);
-  for (int row = 0; row < height; ++row) {
-    const vint m = rows[row].material;
-    const vfloat z = rows[row].depth;
-    const vint has_material = AS_MASK(m != 0);
-    if (any_bit(has_material)) {
-      const vfloat size_x_mm = fma(z, (vfloat)(f->slope_x), (vfloat)(f->mm_per_px_x));
-      const vfloat size_y_mm = fma(z, (vfloat)(f->slope_y), (vfloat)(f->mm_per_px_y));
-      const vfloat finest_mm = lower(size_x_mm, size_y_mm);
-      for (int i = 0; i < MATERIALS; ++i) {
-        const vint mine = AS_MASK(m == i + 1);
-        if (!any_bit(mine)) continue;
-        global const struct MaterialParams* its = materials + i;
-        const vfloat widest = widest_factor(its, rows[row].k);
-        const vint is_narrow = mine & AS_MASK(widest * its->radius_mm < 0.5f * finest_mm);
-        const vint scatters = mine & ~is_narrow;
-        rows[row].material |= is_narrow & NARROW_BIT;
-        seen->narrow += is_narrow;
-        seen->scattered += scatters;
-        if (any_bit(scatters)) see_material(seen, i);
-        seen->size_x = lower(seen->size_x, select(nothing, PIXEL_WIDTH ? size_x_mm / widest : size_x_mm, scatters));
-        seen->size_y = lower(seen->size_y, select(nothing, PIXEL_WIDTH ? size_y_mm / widest : size_y_mm, scatters));
-      }
-#if HAS_DEPTH && !PIXEL_WIDTH && !JITTER
-      widen(&seen->depth, z, has_material);
-      const vint next_material = m.s123456789abcdeff;
-      widen(&seen->along_x, z.s123456789abcdeff - z, has_material & has_next & AS_MASK(next_material == m));
-      widen(&seen->along_y, z - above_depth, has_material & AS_MASK(above_material == m));
-#endif
-    }
-    above_material = m;
-    above_depth = z;
+  const vint m = row->material;
+  const vfloat z = row->depth;
+  const vint has_material = AS_MASK(m != 0);
+  vint marked = m;
+  if (!any_bit(has_material)) return marked;
+  const vfloat size_x_mm = fma(z, (vfloat)(f->slope_x), (vfloat)(f->mm_per_px_x));
+  const vfloat size_y_mm = fma(z, (vfloat)(f->slope_y), (vfloat)(f->mm_per_px_y));
+  const vfloat finest_mm = lower(size_x_mm, size_y_mm);
+  for (int i = 0; i < MATERIALS; ++i) {
+    const vint mine = AS_MASK(m == i + 1);
+    if (!any_bit(mine)) continue;
+    global const struct MaterialParams* its = materials + i;
+    const vfloat widest = widest_factor(its, width_of(row));
+    const vint is_narrow = mine & AS_MASK(widest * its->radius_mm < 0.5f * finest_mm);
+    const vint scatters = mine & ~is_narrow;
+    marked |= is_narrow & NARROW_BIT;
+    seen->narrow += is_narrow;
+    seen->scattered += scatters;
+    if (any_bit(scatters)) see_material(seen, i);
+    seen->size_x = lower(seen->size_x, select(nothing, PIXEL_WIDTH ? size_x_mm / widest : size_x_mm, scatters));
+    seen->size_y = lower(seen->size_y, select(nothing, PIXEL_WIDTH ? size_y_mm / widest : size_y_mm, scatters));
   }
+#if HAS_DEPTH && !PIXEL_WIDTH && !JITTER
+  widen(&seen->depth, z, has_material);
+  const vint next_material = m.s123456789abcdeff;
+  widen(&seen->along_x, z.s123456789abcdeff - z, has_material & has_next & AS_MASK(next_material == m));
+  widen(&seen->along_y, z - above->depth, has_material & AS_MASK(above->material == m));
+#endif
+  return marked;
+}
+
+static inline void write_cell(global struct CellParams* cell, const Seen* seen) {
+  cell->depth_low = lowest(seen->depth.low);
+  cell->depth_high = highest(seen->depth.high);
+  cell->along_x_low = lowest(seen->along_x.low);
+  cell->along_x_high = highest(seen->along_x.high);
+  cell->along_y_low = lowest(seen->along_y.low);
+  cell->along_y_high = highest(seen->along_y.high);
+  // The largest footprint is that of the smallest pixel.
+  const int any_scattered = count_lanes(seen->scattered);
+  cell->finest_x = any_scattered > 0 ? 1.0f / lowest(seen->size_x) : 0.0f;
+  cell->finest_y = any_scattered > 0 ? 1.0f / lowest(seen->size_y) : 0.0f;
+  for (int i = 0; i < 4; ++i) cell->scattering[i] = seen->scattering[i];
+  cell->scattered = any_scattered;
+  cell->narrow = count_lanes(seen->narrow);
+}
+
+// All rows of a cell as if it were of one material without gaps, and their material into the plane. Returns that
+// material, or -1 if it is not. With `direct` there is no call in the loop, before which registers would be saved.
+FORCED_INLINE int see_cell(Seen* seen, const struct FrameParams* f, const SurveyInputs* in,
+                           global const struct MaterialParams* materials, int x, int y, int height,
+                           global uchar* surface, const int direct) {
+  vint others = (vint)(0);
+  vint first = (vint)(0);
+  vfloat above_depth = (vfloat)(0.0f);
+  for (int i = 0; i < height; ++i) {
+    fetch_row_ahead(f, in, x, y + i);
+    const PixelRow row = read_row(f, in, materials, x, y + i, direct);
+    if (i == 0) first = (vint)(row.material.s0);
+    others |= row.material ^ first;
+    see_row(seen, row.depth, above_depth, i == 0);
+    store_bytes(surface + (size_t)i * f->stride, row.material);
+    above_depth = row.depth;
+  }
+  return any_bit(others) ? -1 : first.s0;
 }
 
 static inline void survey_cell(const struct FrameParams* f, const SurveyInputs* in,
                                global const struct MaterialParams* materials, int cell_x, int cell_y,
                                global uchar* surface, global struct CellParams* cell) {
   const Range nothing = {(vfloat)(INFINITY), (vfloat)(-INFINITY)};
-  Seen seen = {nothing, nothing, nothing, nothing.low, nothing.low, (vint)(0), (vint)(0), {0, 0, 0, 0}};
+  const Seen unseen = {nothing, nothing, nothing, nothing.low, nothing.low, (vint)(0), (vint)(0), {0, 0, 0, 0}};
   const int x = cell_x * CELL;
   const int y = cell_y * CELL;
   const int height = min(CELL, f->height - y);
-  PixelRow rows[CELL];
-  vint others = (vint)(0);
-  for (int i = 0; i < height; ++i) {
-    fetch_row_ahead(f, in, x, y + i);
-    rows[i] = read_row(f, in, materials, x, y + i);
-    others |= rows[i].material ^ (vint)(rows[0].material.s0);
-  }
-  const int material = any_bit(others) ? 0 : rows[0].material.s0;
-  cell->material = material;
-  if (PIXEL_WIDTH || material == 0 || !see_whole(&seen, f, materials, material - 1, rows, height)) {
-    seen.depth = nothing;
-    see_mixed(&seen, f, materials, rows, height);
+  global uchar* its_surface = surface + (size_t)y * f->stride + PADDING + x;
+  Seen seen = unseen;
+  const int material = is_direct(f, in, x)
+                           ? see_cell(&seen, f, in, materials, x, y, height, its_surface, 1)
+                           : see_cell(&seen, f, in, materials, x, y, height, its_surface, 0);
+  cell->material = max(material, 0);
+  if (material == 0) {
+    seen = unseen;
+  } else if (!PIXEL_WIDTH && material > 0 && is_wide(&seen, f, materials + material - 1)) {
+    finish_wide(&seen, f, material, height);
+  } else {
+    seen = unseen;
+    PixelRow above = {(vint)(0), (vfloat)(0.0f)};
+    for (int i = 0; i < height; ++i) {
+      const PixelRow row = read_row(f, in, materials, x, y + i, 0);
+      const vint marked = see_mixed_row(&seen, f, materials, &row, &above);
+      store_bytes(its_surface + (size_t)i * f->stride, marked);
+      above = row;
+    }
     if (any_bit(seen.narrow)) cell->material = 0;
   }
-  for (int i = 0; i < height; ++i) store_bytes(surface + (size_t)(y + i) * f->stride + PADDING + x, rows[i].material);
-  cell->depth_low = lowest(seen.depth.low);
-  cell->depth_high = highest(seen.depth.high);
-  cell->along_x_low = lowest(seen.along_x.low);
-  cell->along_x_high = highest(seen.along_x.high);
-  cell->along_y_low = lowest(seen.along_y.low);
-  cell->along_y_high = highest(seen.along_y.high);
-  // The largest footprint is that of the smallest pixel.
-  const int any_scattered = count_lanes(seen.scattered);
-  cell->finest_x = any_scattered > 0 ? 1.0f / lowest(seen.size_x) : 0.0f;
-  cell->finest_y = any_scattered > 0 ? 1.0f / lowest(seen.size_y) : 0.0f;
-  for (int i = 0; i < 4; ++i) cell->scattering[i] = seen.scattering[i];
-  cell->scattered = any_scattered;
-  cell->narrow = count_lanes(seen.narrow);
+  write_cell(cell, &seen);
 }
 
 kernel void survey(struct FrameParams f, int cells_per_item, global const struct MaterialParams* materials,
@@ -276,8 +330,9 @@ typedef struct {
 } Interval;
 
 static inline void join(Interval* a, float low, float high) {
-  a->low = fmin(a->low, low);
-  a->high = fmax(a->high, high);
+  // Without the care of fmin for NaN.
+  a->low = low < a->low ? low : a->low;
+  a->high = high > a->high ? high : a->high;
 }
 
 // 0 where nothing is known.
@@ -360,7 +415,10 @@ static inline struct CellPass pass_over(const struct FrameParams* f, global cons
                                         int cell_x, int cell_y, int axis) {
   global const struct CellParams* own = cells + cell_y * f->cells_x + cell_x;
   struct CellPass pass = {0.0f, SHAPE_CURVED, 0};
-  if (own->scattered == 0) return pass;
+  if (own->scattered == 0) {
+    if (own->narrow == 0) pass.shape = SHAPE_EMPTY;
+    return pass;
+  }
   const int size_px = axis == 0 ? f->width : f->height;
   const int cell = axis == 0 ? cell_x : cell_y;
   const int step = axis == 0 ? 1 : f->cells_x;

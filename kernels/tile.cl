@@ -5,7 +5,7 @@
 #include "scatter.h"
 
 // How far the taps of a pass go in the cells of a rectangle, px.
-static inline int farthest_tap(const struct FrameParams* f, const Tables* tables, int x_begin, int x_end, int y_begin,
+SHARED int farthest_tap(const struct FrameParams* f, const Tables* tables, int x_begin, int x_end, int y_begin,
                                int y_end, int axis) {
   int farthest = 0;
   for (int cy = y_begin / CELL; cy * CELL < y_end; ++cy) {
@@ -40,17 +40,8 @@ static inline void find_first(Sight* sight, const LoadedLight* loaded) {
 #undef FIRST_LANE
 }
 
-// Copies what does not scatter.
-static inline void copy_tile(const struct FrameParams* f, const Inputs* in, const Outputs* out, int x_begin, int x_end,
-                             int y_begin, int y_end) {
-  for (int y = y_begin; y < y_end; ++y) {
-    const InputRows rows = input_rows(f, in, y);
-    for (int x = x_begin; x < x_end; x += V) compose(f, in, &rows, out, same_rgb((vfloat)(0.0f)), 0, x, y);
-  }
-}
-
 // The most curved shape of a cell of a rectangle in a pass.
-static inline int worst_shape(const struct FrameParams* f, const Tables* tables, int x_begin, int x_end, int y_begin,
+SHARED int worst_shape(const struct FrameParams* f, const Tables* tables, int x_begin, int x_end, int y_begin,
                               int y_end, int axis) {
   int worst = SHAPE_FLAT;
   for (int cy = y_begin / CELL; cy * CELL < y_end; ++cy) {
@@ -67,8 +58,8 @@ typedef struct {
   int begin, end;
 } Columns;
 
-// The columns in which some cell of a rectangle is at least that curved in a pass.
-static inline Columns columns_of(const struct FrameParams* f, const Tables* tables, int x_begin, int x_end, int y_begin,
+// The columns in which some cell of a rectangle is at least that curved in a pass; SHAPE_EMPTY + 1: not empty.
+SHARED Columns columns_of(const struct FrameParams* f, const Tables* tables, int x_begin, int x_end, int y_begin,
                                  int y_end, int axis, int shape) {
 #if JITTER
   const Columns all = {x_begin, x_end};
@@ -78,7 +69,7 @@ static inline Columns columns_of(const struct FrameParams* f, const Tables* tabl
   for (int cy = y_begin / CELL; cy * CELL < y_end; ++cy) {
     for (int cx = x_begin / CELL; cx * CELL < x_end; ++cx) {
       const struct CellPass pass = cell_pass(f, tables, cx, cy, axis);
-      if (pass.footprint == 0.0f || pass.shape < shape) continue;
+      if (pass.shape < shape || (shape > SHAPE_FLAT && pass.footprint == 0.0f)) continue;
       columns.begin = min(columns.begin, cx * CELL);
       columns.end = max(columns.end, cx * CELL + CELL);
     }
@@ -120,18 +111,16 @@ static inline RgbRow later_light(const Windows* w, const struct FrameParams* f, 
   return rgb_row_of(in->light, &in->light_at, f->width, min(y + ROWS_AHEAD, w->across.y_end - 1));
 }
 
-// Light of one row of the horizontal pass's window.
-SHARED void load_light_row(Sight* sight, const Windows* w, const struct FrameParams* f, const Inputs* in, int y) {
-  const Window* across = &w->across;
-  const InputRows rows = input_rows(f, in, y);
+// Light of some pixels of one row of the horizontal pass's window. Returns the lanes that differ from the first one.
+FORCED_INLINE vint load_light_run(Sight* sight, const Windows* w, const struct FrameParams* f, const InputRows* rows,
+                                  const RgbRow* later, int x_begin, int x_end, int y, const int direct) {
   const int in_down = y >= w->down.y_begin && y < w->down.y_end;
   const int is_own = y >= w->own_y_begin && y < w->own_y_end;
-  const RgbRow later = later_light(w, f, in, y);
   vint varied = (vint)(0);
-  for (int x = across->x_begin - PADDING; x < across->x_end + PADDING; x += V) {
+  for (int x = x_begin; x < x_end; x += V) {
     // What lies between is fetched bit by bit beside the horizontal pass.
-    if (x < w->x_begin || x >= w->x_end) fetch_rgb_ahead(&later, x);
-    const LoadedLight loaded = load_light(across, f, &rows, x, y);
+    if (x < w->x_begin || x >= w->x_end) fetch_rgb_ahead(later, x);
+    const LoadedLight loaded = load_light(&w->across, f, rows, x, y, direct);
     if (in_down && x >= w->x_begin && x < w->x_end) {
       store_bytes(w->down.material + pixel_at(&w->down, x, y), loaded.material);
     }
@@ -150,6 +139,31 @@ SHARED void load_light_row(Sight* sight, const Windows* w, const struct FramePar
                (as_vint(loaded.light.b) ^ as_vint((vfloat)(sight->light[2])))) &
               there;
   }
+  return varied;
+}
+
+// The same of any images, anywhere.
+SHARED vint load_any_light_run(Sight* sight, const Windows* w, const struct FrameParams* f, const InputRows* rows,
+                               const RgbRow* later, int x_begin, int x_end, int y) {
+  return load_light_run(sight, w, f, rows, later, x_begin, x_end, y, 0);
+}
+
+// Light of one row of the horizontal pass's window.
+SHARED void load_light_row(Sight* sight, const Windows* w, const struct FrameParams* f, const Inputs* in,
+                           Columns columns, int y) {
+  const InputRows rows = input_rows(f, in, y);
+  const RgbRow later = later_light(w, f, in, y);
+  int direct_begin = columns.begin;
+  int direct_end = columns.begin;
+#if V > 1 && !HAS_ALBEDO
+  if (rows.light.planar) {
+    direct_begin = max(columns.begin, 0);
+    direct_end = max(min(columns.end, f->width / V * V), direct_begin);
+  }
+#endif
+  vint varied = load_any_light_run(sight, w, f, &rows, &later, columns.begin, direct_begin, y);
+  varied |= load_light_run(sight, w, f, &rows, &later, direct_begin, direct_end, y, 1);
+  varied |= load_any_light_run(sight, w, f, &rows, &later, direct_end, columns.end, y);
   if (any_bit(varied)) sight->last_varied = y;
 }
 
@@ -178,6 +192,7 @@ static inline struct ChoiceParams choice_of(const struct FrameParams* f, const T
                                             int axis) {
   struct ChoiceParams choice = {WAY_GENERAL, 0, 0, 0};
   const struct CellPass pass = cell_pass(f, tables, cell_x, cell_y, axis);
+  if (pass.shape == SHAPE_EMPTY) choice.way = WAY_EMPTY;
   if (JITTER || pass.material == 0) return choice;
   choice.material = pass.material - 1;
   global const struct MaterialParams* its = tables->materials + choice.material;
@@ -212,14 +227,38 @@ FORCED_INLINE void store_planes(const Planes* to, size_t at, vrgb value) {
 #endif
 }
 
-// Part of a row of an output, past the caches: nobody reads it soon, so that its lines need not be fetched.
-FORCED_INLINE void stream_floats(global float* to, global const float* from, int count) {
-  int i = 0;
-#if V > 1 && __has_builtin(__builtin_nontemporal_store)
-  for (; i < count && ((size_t)(to + i) & (sizeof(vfloat) - 1)) != 0; ++i) to[i] = from[i];
-  for (; i + V <= count; i += V) __builtin_nontemporal_store(load_floats(from + i), (global vfloat*)(to + i));
+#if V > 1
+typedef float2 unaligned_floats2 __attribute__((aligned(4)));
+typedef float4 unaligned_floats4 __attribute__((aligned(4)));
+typedef float8 unaligned_floats8 __attribute__((aligned(4)));
+
+// Fewer than 16 floats.
+static inline void copy_floats(global float* to, global const float* from, int count) {
+#define COPY_PART(size)                                                                  \
+  if (count & size) {                                                                    \
+    *(global unaligned_floats##size*)to = *(global const unaligned_floats##size*)from;   \
+    to += size;                                                                          \
+    from += size;                                                                        \
+  }
+  COPY_PART(8)
+  COPY_PART(4)
+  COPY_PART(2)
+#undef COPY_PART
+  if (count & 1) *to = *from;
+}
 #endif
-  for (; i < count; ++i) to[i] = from[i];
+
+// Part of a row of an output, past the caches: nobody reads it soon, so that its lines need not be fetched.
+SHARED void stream_floats(global float* to, global const float* from, int count) {
+#if V > 1 && __has_builtin(__builtin_nontemporal_store)
+  const int before = min((int)(-((size_t)to / sizeof(float)) & (V - 1)), count);
+  copy_floats(to, from, before);
+  int i = before;
+  for (; i + V <= count; i += V) __builtin_nontemporal_store(load_floats(from + i), (global vfloat*)(to + i));
+  copy_floats(to + i, from + i, count - i);
+#else
+  for (int i = 0; i < count; ++i) to[i] = from[i];
+#endif
 }
 
 SHARED void stream_planes(const Planes* to, const Planes* from, int x_begin, int x_end, int y_begin, int y_end) {
@@ -229,6 +268,28 @@ SHARED void stream_planes(const Planes* to, const Planes* from, int x_begin, int
     stream_floats(to->r + at, from->r + from_at, x_end - x_begin);
     stream_floats(to->g + at, from->g + from_at, x_end - x_begin);
     stream_floats(to->b + at, from->b + from_at, x_end - x_begin);
+  }
+}
+
+// Pixels that do not scatter. `has_narrow`: some have a material.
+SHARED void copy_pixels(const struct FrameParams* f, const Inputs* in, const Outputs* out, int has_narrow,
+                               int x_begin, int x_end, int y_begin, int y_end) {
+#if !LIT
+  if (!has_narrow && f->albedo_mix == 0.0f && !out->writes_result && is_planar(&in->light_at) &&
+      is_planar(&out->scattered_at)) {
+    for (int y = y_begin; y < y_end; ++y) {
+#pragma nounroll
+      for (int c = 0; c < 3; ++c) {
+        stream_floats((global float*)(out->scattered + byte_at(&out->scattered_at, x_begin, y, c)),
+                      (global const float*)(in->light + byte_at(&in->light_at, x_begin, y, c)), x_end - x_begin);
+      }
+    }
+    return;
+  }
+#endif
+  for (int y = y_begin; y < y_end; ++y) {
+    const InputRows rows = input_rows(f, in, y);
+    for (int x = x_begin; x < x_end; x += V) compose(f, in, &rows, out, same_rgb((vfloat)(0.0f)), 0, x, y);
   }
 }
 
@@ -285,6 +346,17 @@ SHARED void across_curved(const Windows* w, const struct FrameParams* f, const T
   }
 }
 
+// Cells without material of one row: what taps find there.
+SHARED void across_empty(const Windows* w, int x_begin, int x_end, int y) {
+  const size_t at = pixel_at(&w->down, 0, y);
+  for (int x = x_begin; x < x_end; x += V) {
+    for (int t = 0; t < TERMS; ++t) {
+      store_rgb(w->down.light + 3 * t * w->down.plane, w->down.plane, at + x, same_rgb((vfloat)(0.0f)));
+    }
+    store_bytes(w->down.material + at + x, (vint)(0));
+  }
+}
+
 // Any cells of one row.
 SHARED void across_any(const Windows* w, const struct FrameParams* f, const Tables* tables, const RgbRow* later, int x_begin, int x_end,
                        int y) {
@@ -299,10 +371,11 @@ SHARED void across_any(const Windows* w, const struct FrameParams* f, const Tabl
   }
 }
 
-// The horizontal pass over one row of uniform light: a term is its sum times the light.
-SHARED void across_uniform(const Windows* w, const Tables* tables, const Sight* sight, const RgbRow* later, int y) {
+// Cells of one row of uniform light: a term is its sum times the light.
+SHARED void across_uniform(const Windows* w, const Tables* tables, const Sight* sight, const RgbRow* later,
+                           int x_begin, int x_end, int y) {
   const vrgb light = {(vfloat)(sight->light[0]), (vfloat)(sight->light[1]), (vfloat)(sight->light[2])};
-  for (int x = w->x_begin; x < w->x_end; x += V) {
+  for (int x = x_begin; x < x_end; x += V) {
     fetch_rgb_ahead(later, x);
     const vint m = load_bytes(w->across.material + pixel_at(&w->across, x, y)) & MATERIAL_MASK;
     for (int t = 0; t < TERMS; ++t) {
@@ -325,17 +398,18 @@ static inline void scatter_row(const Windows* w, const struct FrameParams* f, co
   if (y % CELL == 0 || y == w->y_begin) {
     for (int i = 0; i < cells; ++i) w->choices[i] = choice_of(f, tables, w->x_begin / CELL + i, y / CELL, 0);
   }
-  if (skips && sight->last_varied != y) {
-    across_uniform(w, tables, sight, &later, y);
-    return;
-  }
+  const int is_uniform = skips && sight->last_varied != y;
   int end = 0;
   for (int i = 0; i < cells; i = end) {
     for (end = i + 1; end < cells && same_choice(w->choices + i, w->choices + end);) ++end;
     const int x = w->x_begin + i * CELL;
     const int x_end = min(w->x_begin + end * CELL, w->x_end);
-    const int way = sight->last_bad == y ? WAY_GENERAL : w->choices[i].way;
-    if (way == WAY_FLAT) {
+    const int way = sight->last_bad == y && w->choices[i].way != WAY_EMPTY ? WAY_GENERAL : w->choices[i].way;
+    if (way == WAY_EMPTY) {
+      across_empty(w, x, x_end, y);
+    } else if (is_uniform) {
+      across_uniform(w, tables, sight, &later, x, x_end, y);
+    } else if (way == WAY_FLAT) {
       across_flat(w, tables, w->choices[i], &later, x, x_end, y);
     } else if (way == WAY_SMOOTH) {
       across_smooth(w, f, tables, w->choices[i], &later, x, x_end, y);
@@ -472,27 +546,26 @@ static inline void compose_band(const Windows* w, const struct FrameParams* f, c
   }
 }
 
-// What is in the band into the outputs: composed, or as it is.
-static inline void put_band(const Windows* w, const struct FrameParams* f, const Inputs* in, const Outputs* out,
-                            int composes, int all_finite, global float* held, const Planes* band, const Planes* output,
-                            int x_begin, int x_end, int y_begin, int y_end) {
-  if (composes) {
-    compose_band(w, f, in, out, 0, all_finite, held, band, x_begin, x_end, y_begin, y_end);
-  } else {
-    stream_planes(output, band, x_begin, x_end, y_begin, y_end);
-  }
-}
+// How what is in the band becomes the output.
+#define BAND_STREAMED 0  // as it is
+#define BAND_COMPOSED 1
+#define BAND_EMPTY 2  // there is nothing in it
 
-// The vertical pass over some rows of one column of cells, into the band. Returns whether some of its pixels may be
-// such that their outputs are not the light after it.
+// The vertical pass over some rows of one column of cells, into the band.
 static inline int scatter_column(const Windows* w, const struct FrameParams* f, const Tables* tables,
                                  const Planes* band, int has_bad, int x, int y_begin, int y_end) {
   const int x_end = min(x + CELL, w->own_x_end);
-  int composes = 0;
+  int is_empty = 1;
+  int is_general = 0;
   for (int y = y_begin, end = y_begin; y < y_end; y = end) {
     end = min((y / CELL + 1) * CELL, y_end);
     const struct ChoiceParams choice = choice_of(f, tables, x / CELL, y / CELL, 1);
+    if (choice.way == WAY_EMPTY) {
+      is_general = 1;
+      continue;
+    }
     const int way = has_bad ? WAY_GENERAL : choice.way;
+    is_empty = 0;
     if (way == WAY_FLAT) {
       down_flat(w, tables, choice, band, x, x_end, y, end);
     } else if (way == WAY_SMOOTH) {
@@ -501,16 +574,29 @@ static inline int scatter_column(const Windows* w, const struct FrameParams* f, 
       down_curved(w, f, tables, choice, band, x, x_end, y, end);
     } else {
       down_any(w, f, tables, band, x, x_end, y, end);
-      composes = 1;
+      is_general = 1;
     }
   }
-  return composes;
+  return is_empty ? BAND_EMPTY : is_general ? BAND_COMPOSED : BAND_STREAMED;
+}
+
+// What is in the band into the outputs.
+static inline void put_band(const Windows* w, const struct FrameParams* f, const Inputs* in, const Outputs* out,
+                            int how, int all_finite, int copies, global float* held, const Planes* band,
+                            const Planes* output, int x_begin, int x_end, int y_begin, int y_end) {
+  if (how == BAND_EMPTY) {
+    if (copies) copy_pixels(f, in, out, 0, x_begin, x_end, y_begin, y_end);
+  } else if (how == BAND_COMPOSED || !output->r) {
+    compose_band(w, f, in, out, 0, all_finite, held, band, x_begin, x_end, y_begin, y_end);
+  } else {
+    stream_planes(output, band, x_begin, x_end, y_begin, y_end);
+  }
 }
 
 // The vertical pass over some rows of the tile, and their outputs.
 static inline void scatter_down(const Windows* w, const struct FrameParams* f, const Inputs* in, const Outputs* out,
-                                const Tables* tables, const Sight* sight, int skips, global float* held, int y_begin,
-                                int y_end) {
+                                const Tables* tables, const Sight* sight, int copies, int skips, global float* held,
+                                int y_begin, int y_end) {
   const int has_bad = sight->last_bad >= y_begin - w->reach_y;
   const Planes band = band_of(w, y_begin);
   if (skips && sight->last_varied < y_begin - w->reach_y) {
@@ -521,31 +607,35 @@ static inline void scatter_down(const Windows* w, const struct FrameParams* f, c
   const Planes output = output_of(f, out, held);
   // Column of cells after column: the rows that taps of a column fall on stay in the first-level cache.
   int run_begin = w->own_x_begin;
-  int run_composes = 0;
+  int run_how = BAND_STREAMED;
   for (int x = w->own_x_begin; x < w->own_x_end; x += CELL) {
-    const int composes = scatter_column(w, f, tables, &band, has_bad, x, y_begin, y_end) || !output.r;
-    if (composes != run_composes) {
-      put_band(w, f, in, out, run_composes, !has_bad, held, &band, &output, run_begin, x, y_begin, y_end);
-      run_begin = x;
-      run_composes = composes;
-    }
+    const int how = scatter_column(w, f, tables, &band, has_bad, x, y_begin, y_end);
+    if (how == run_how) continue;
+    put_band(w, f, in, out, run_how, !has_bad, copies, held, &band, &output, run_begin, x, y_begin, y_end);
+    run_begin = x;
+    run_how = how;
   }
-  put_band(w, f, in, out, run_composes, !has_bad, held, &band, &output, run_begin, w->own_x_end, y_begin, y_end);
+  put_band(w, f, in, out, run_how, !has_bad, copies, held, &band, &output, run_begin, w->own_x_end, y_begin, y_end);
 }
 
 // Both passes.
 static inline Sight scatter_rows(const Windows* w, const struct FrameParams* f, const Inputs* in, const Outputs* out,
-                                 const Tables* tables, int skips, global float* held) {
+                                 const Tables* tables, int copies, int skips, global float* held) {
   Sight sight = {{0.0f, 0.0f, 0.0f}, 0, 0, INT_MIN, INT_MIN};
   const Window* across = &w->across;
   const Window* down = &w->down;
   int next = w->own_y_begin;
   int next_surface = down->y_begin;
   const Columns nothing = {0, 0};
+  Columns there = nothing;
   Columns bent = nothing;
   Columns curved = nothing;
   for (int y = across->y_begin; y < across->y_end; ++y) {
-    load_light_row(&sight, w, f, in, y);
+    if (y % CELL == 0 || y == across->y_begin) {
+      there = columns_of(f, tables, w->x_begin, w->x_end, y, y + 1, 0, SHAPE_EMPTY + 1);
+      there = widened(there, w->reach_x + V, across);
+    }
+    load_light_row(&sight, w, f, in, there, y);
     if (w->shape_across != SHAPE_FLAT && (y % CELL == 0 || y == across->y_begin)) {
       bent = widened(columns_of(f, tables, w->x_begin, w->x_end, y, y + 1, 0, SHAPE_SMOOTH), 0, across);
       curved = widened(columns_of(f, tables, w->x_begin, w->x_end, y, y + 1, 0, SHAPE_CURVED), w->reach_x + V, across);
@@ -575,7 +665,7 @@ static inline Sight scatter_rows(const Windows* w, const struct FrameParams* f, 
     while (next < w->own_y_end) {
       const int end = min((next / BAND + 1) * BAND, w->own_y_end);
       if (y + 1 < min(end + w->reach_y, across->y_end)) break;
-      scatter_down(w, f, in, out, tables, &sight, skips, held, next, end);
+      scatter_down(w, f, in, out, tables, &sight, copies, skips, held, next, end);
       next = end;
     }
 #endif
@@ -586,7 +676,7 @@ static inline Sight scatter_rows(const Windows* w, const struct FrameParams* f, 
   sight.last_bad = sight.last_varied = w->y_end;
   while (next < w->own_y_end) {
     const int end = min((next / BAND + 1) * BAND, w->own_y_end);
-    scatter_down(w, f, in, out, tables, &sight, 0, held, next, end);
+    scatter_down(w, f, in, out, tables, &sight, copies, 0, held, next, end);
     next = end;
   }
 #endif
@@ -673,11 +763,11 @@ static inline int scatter_tile(const struct FrameParams* f, const Inputs* in, co
     }
   }
   if (scattered == 0) {
-    if (copies) copy_tile(f, in, out, x_begin, x_end, y_begin, y_end);
+    if (copies) copy_pixels(f, in, out, narrow > 0, x_begin, x_end, y_begin, y_end);
     return narrow > 0 ? TILE_NARROW : TILE_WITHOUT_MATERIAL;
   }
   const Windows w = windows_of(f, tables, x_begin, x_end, y_begin, y_end, memory, across_plane, down_plane);
-  const Sight sight = scatter_rows(&w, f, in, out, tables, skips, held);
+  const Sight sight = scatter_rows(&w, f, in, out, tables, copies, skips, held);
   *bad_pixels += sight.bad_pixels;
   if (skips && sight.last_varied < w.y_begin) {
     return sight.light[0] == 0.0f && sight.light[1] == 0.0f && sight.light[2] == 0.0f ? TILE_UNLIT : TILE_UNIFORM;

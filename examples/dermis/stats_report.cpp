@@ -128,6 +128,7 @@ std::string text_of(const StatsReport& report) {
   text += counted("without material", stats.pixels_without_material, stats.pixels);
   text += counted("narrow", stats.pixels_narrow, stats.pixels);
   text += counted("flat", stats.pixels_flat, stats.pixels);
+  text += counted("smooth", stats.pixels_smooth, stats.pixels);
   text += counted("bad", stats.pixels_bad, stats.pixels);
   return text + text_of_steps(report);
 }
@@ -156,6 +157,7 @@ std::string json_text_of(const StatsReport& report) {
                       {"without_material", stats.pixels_without_material},
                       {"narrow", stats.pixels_narrow},
                       {"flat", stats.pixels_flat},
+                      {"smooth", stats.pixels_smooth},
                       {"bad", stats.pixels_bad}};
   for (const MaterialReport& material : report.materials) object["materials"].push_back(json_of(material));
   return json_text(object);

@@ -26,6 +26,7 @@ constexpr std::array<KindLook, tile_kinds> looks = {{{"without material", "grey"
                                                      {"unlit", "blue", {0, 0.1F, 1}},
                                                      {"uniform", "green", {0, 0.5F, 0.1F}},
                                                      {"flat", "yellow", {1, 0.8F, 0}},
+                                                     {"smooth", "orange", {1, 0.3F, 0}},
                                                      {"curved", "red", {1, 0.05F, 0.02F}}}};
 
 const KindLook& look_of(TileKind kind) { return looks[static_cast<std::size_t>(kind)]; }

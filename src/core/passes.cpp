@@ -250,7 +250,8 @@ void Passes::finish() {
                 flag(images_.has(ImageName::scattered)),                                                  //
                 images_.buffer(ImageName::result), images_.layout(ImageName::result),                     //
                 flag(images_.has(ImageName::result)), flag(plan_.options.bad_pixels == BadPixels::zero),  //
-                flag(copies_ || !plan_.tiled), memory_.held, memory_.kinds, plan_.item_is_pixel ? 1 : params_.width);
+                flag(copies_ || !plan_.tiled), memory_.held, memory_.kinds, memory_.passes,
+                plan_.item_is_pixel ? 1 : params_.width);
   events_.finish.push_back(launch(kernel, runs(), params_.height, plan_.item_is_pixel ? 0 : 1));
 }
 

@@ -61,7 +61,7 @@ TEST_CASE("pixels without material and narrow kernels keep their bits and are co
   CHECK(stats.tiles.rows == 3);
   CHECK(stats.count(TileKind::without_material) == 3);
   CHECK(stats.count(TileKind::narrow) == 3);
-  CHECK(stats.count(TileKind::flat) + stats.count(TileKind::curved) == 6);
+  CHECK(stats.count(TileKind::flat) + stats.count(TileKind::smooth) + stats.count(TileKind::curved) == 6);
   long changed = 0;
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
