@@ -46,10 +46,11 @@ typedef long long Bytes;
 #define TILE_NARROW 1
 #define TILE_UNLIT 2
 #define TILE_UNIFORM 3
-#define TILE_FLAT 4  // all cells are flat: no depth terms
+#define TILE_FLAT 4    // all cells are flat: no depth terms
 #define TILE_SMOOTH 5  // all cells are flat or smooth: no depth of taps
 #define TILE_CURVED 6
-#define TILE_KINDS 7
+#define TILE_REUSED 7  // nothing within reach has changed since the frame before
+#define TILE_KINDS 8
 
 // Directions of the rotation of tap axes.
 #define ROTATIONS 256
@@ -98,10 +99,10 @@ struct CellParams {
   float depth_low, depth_high;      // mm; of all pixels with a material
   float along_x_low, along_x_high;  // change of depth to the next pixel of the same material
   float along_y_low, along_y_high;
-  float finest_x, finest_y;  // largest footprint of a pixel that scatters, px per mm, times its width factor
+  float finest_x, finest_y;    // largest footprint of a pixel that scatters, px per mm, times its width factor
   unsigned int scattering[4];  // a bit for each material that some pixel scatters by
-  int material;              // byte of all pixels of the plane of materials; 0 if they differ
-  int scattered;             // pixels
+  int material;                // byte of all pixels of the plane of materials; 0 if they differ
+  int scattered;               // pixels
   int narrow;
 };
 

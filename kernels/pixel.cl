@@ -13,16 +13,17 @@ kernel void segments(struct FrameParams f, struct WindowParams window, global uc
   store_floats(down_segment + at, segment_length(&f, &w, x, y, 1));
 }
 
-#define SCATTER_ARGUMENTS                                                                                      \
-  struct FrameParams f, struct WindowParams window, global const struct MaterialParams *materials,             \
-      global const struct TermParams *terms, global const struct RungParams *rungs, global const int *offsets, \
-      global const struct WeightParams *weights, global const struct FlatWeight *flat_weights,                 \
-      global const struct SmoothWeight *smooth_weights, \
-      global const struct RotationParams *rotations, uint seed, global const struct CellPasses *passes,        \
-      global uchar *memory, long plane, global float *between, global float *down_segment
+#define SCATTER_ARGUMENTS                                                                                         \
+  struct FrameParams f, struct WindowParams window, global const struct MaterialParams *materials,                \
+      global const struct TermParams *terms, global const struct RungParams *rungs, global const int *offsets,    \
+      global const struct WeightParams *weights, global const struct FlatWeight *flat_weights,                    \
+      global const struct SmoothWeight *smooth_weights, global const struct RotationParams *rotations, uint seed, \
+      global const struct CellPasses *passes, global uchar *memory, long plane, global float *between,            \
+      global float *down_segment
 
 kernel void scatter_x(SCATTER_ARGUMENTS) {
-  const Tables tables = {materials, terms, rungs, offsets, weights, flat_weights, smooth_weights, rotations, passes, seed};
+  const Tables tables = {materials,    terms,          rungs,     offsets, weights,
+                         flat_weights, smooth_weights, rotations, passes,  seed};
   const Window w = window_in(window, plane, 1, memory);
   const Pass pass = pass_from(&w, 0);
   const int x = get_global_id(0);
@@ -33,7 +34,8 @@ kernel void scatter_x(SCATTER_ARGUMENTS) {
 }
 
 kernel void scatter_y(SCATTER_ARGUMENTS, global float* held) {
-  const Tables tables = {materials, terms, rungs, offsets, weights, flat_weights, smooth_weights, rotations, passes, seed};
+  const Tables tables = {materials,    terms,          rungs,     offsets, weights,
+                         flat_weights, smooth_weights, rotations, passes,  seed};
   Window w = window_in(window, plane, 1, memory);
   w.light = between;
   w.segment = down_segment;

@@ -438,7 +438,7 @@ FORCED_INLINE vrgb total_of(global const struct TermParams* terms, const vrgb* v
 // The lanes of all materials, whatever taps fall on: of each term in the horizontal pass, their sum as the first one in
 // the vertical pass. It is rarely needed, so that there is one for both passes.
 SHARED void scatter_pixels(vrgb* result, const struct FrameParams* f, const Pass* s, const Tables* tables, int x,
-                                  int y) {
+                           int y) {
   const size_t at = pixel_at(s->from, x, y);
   const vint m = load_bytes(s->from->material + at);
   const struct CellPass pass = cell_pass(f, tables, x / CELL, y / CELL, s->axis);

@@ -65,8 +65,8 @@ FORCED_INLINE PixelRow read_row(const struct FrameParams* f, const SurveyInputs*
   PixelRow row;
   row.material = (vint)(1);
 #if HAS_MATERIAL
-  row.material = find_material(read_row_values(row_of(in->material, &in->material_at, f->width, y, 0), x, direct),
-                               materials);
+  row.material =
+      find_material(read_row_values(row_of(in->material, &in->material_at, f->width, y, 0), x, direct), materials);
 #endif
   if (!direct) row.material &= AS_MASK(x + int_lane_numbers() < (vint)(f->width));
   row.depth = (vfloat)(0.0f);
@@ -275,9 +275,8 @@ static inline void survey_cell(const struct FrameParams* f, const SurveyInputs* 
   const int height = min(CELL, f->height - y);
   global uchar* its_surface = surface + (size_t)y * f->stride + PADDING + x;
   Seen seen = unseen;
-  const int material = is_direct(f, in, x)
-                           ? see_cell(&seen, f, in, materials, x, y, height, its_surface, 1)
-                           : see_cell(&seen, f, in, materials, x, y, height, its_surface, 0);
+  const int material = is_direct(f, in, x) ? see_cell(&seen, f, in, materials, x, y, height, its_surface, 1)
+                                           : see_cell(&seen, f, in, materials, x, y, height, its_surface, 0);
   cell->material = max(material, 0);
   if (material == 0) {
     seen = unseen;

@@ -71,8 +71,7 @@ FORCED_INLINE Bend bend_at(const struct FrameParams* f, const Window* w, global 
   vfloat forward = load_floats(w->depth + after) - p.z;
   if (!clean) {
     const vint m = load_bytes(w->surface + at) & MATERIAL_MASK;
-    const vint has_before =
-        AS_MASK((load_bytes(w->surface + before) & MATERIAL_MASK) == m) & (vint)(-has_row_before);
+    const vint has_before = AS_MASK((load_bytes(w->surface + before) & MATERIAL_MASK) == m) & (vint)(-has_row_before);
     const vint has_after = AS_MASK((load_bytes(w->surface + after) & MATERIAL_MASK) == m) & (vint)(-has_row_after);
     const vfloat from_before = keep(has_before, backward);
     const vfloat to_after = keep(has_after, forward);
@@ -93,6 +92,7 @@ FORCED_INLINE Bend bend_at(const struct FrameParams* f, const Window* w, global 
   Bend bend;
   bend.stretch = clamp(fma((vfloat)(square), fma(along, along, depth_factor * slope), (vfloat)(-1.0f)),
                        (vfloat)(-MOST_STRETCH), (vfloat)(MOST_STRETCH));
-  bend.skew = clamp(square * fma(along, along_change, depth_factor * change), (vfloat)(-most_skew), (vfloat)(most_skew));
+  bend.skew =
+      clamp(square * fma(along, along_change, depth_factor * change), (vfloat)(-most_skew), (vfloat)(most_skew));
   return bend;
 }

@@ -6,7 +6,7 @@
 
 // How far the taps of a pass go in the cells of a rectangle, px.
 SHARED int farthest_tap(const struct FrameParams* f, const Tables* tables, int x_begin, int x_end, int y_begin,
-                               int y_end, int axis) {
+                        int y_end, int axis) {
   int farthest = 0;
   for (int cy = y_begin / CELL; cy * CELL < y_end; ++cy) {
     for (int cx = x_begin / CELL; cx * CELL < x_end; ++cx) {
@@ -42,7 +42,7 @@ static inline void find_first(Sight* sight, const LoadedLight* loaded) {
 
 // The most curved shape of a cell of a rectangle in a pass.
 SHARED int worst_shape(const struct FrameParams* f, const Tables* tables, int x_begin, int x_end, int y_begin,
-                              int y_end, int axis) {
+                       int y_end, int axis) {
   int worst = SHAPE_FLAT;
   for (int cy = y_begin / CELL; cy * CELL < y_end; ++cy) {
     for (int cx = x_begin / CELL; cx * CELL < x_end; ++cx) {
@@ -60,7 +60,7 @@ typedef struct {
 
 // The columns in which some cell of a rectangle is at least that curved in a pass; SHAPE_EMPTY + 1: not empty.
 SHARED Columns columns_of(const struct FrameParams* f, const Tables* tables, int x_begin, int x_end, int y_begin,
-                                 int y_end, int axis, int shape) {
+                          int y_end, int axis, int shape) {
 #if JITTER
   const Columns all = {x_begin, x_end};
   return all;
@@ -234,11 +234,11 @@ typedef float8 unaligned_floats8 __attribute__((aligned(4)));
 
 // Fewer than 16 floats.
 static inline void copy_floats(global float* to, global const float* from, int count) {
-#define COPY_PART(size)                                                                  \
-  if (count & size) {                                                                    \
-    *(global unaligned_floats##size*)to = *(global const unaligned_floats##size*)from;   \
-    to += size;                                                                          \
-    from += size;                                                                        \
+#define COPY_PART(size)                                                                \
+  if (count & size) {                                                                  \
+    *(global unaligned_floats##size*)to = *(global const unaligned_floats##size*)from; \
+    to += size;                                                                        \
+    from += size;                                                                      \
   }
   COPY_PART(8)
   COPY_PART(4)
@@ -272,8 +272,8 @@ SHARED void stream_planes(const Planes* to, const Planes* from, int x_begin, int
 }
 
 // Pixels that do not scatter. `has_narrow`: some have a material.
-SHARED void copy_pixels(const struct FrameParams* f, const Inputs* in, const Outputs* out, int has_narrow,
-                               int x_begin, int x_end, int y_begin, int y_end) {
+SHARED void copy_pixels(const struct FrameParams* f, const Inputs* in, const Outputs* out, int has_narrow, int x_begin,
+                        int x_end, int y_begin, int y_end) {
 #if !LIT
   if (!has_narrow && f->albedo_mix == 0.0f && !out->writes_result && is_planar(&in->light_at) &&
       is_planar(&out->scattered_at)) {
@@ -294,8 +294,8 @@ SHARED void copy_pixels(const struct FrameParams* f, const Inputs* in, const Out
 }
 
 // Flat cells of one row.
-SHARED void across_flat(const Windows* w, const Tables* tables, struct ChoiceParams choice, const RgbRow* later, int x_begin, int x_end,
-                        int y) {
+SHARED void across_flat(const Windows* w, const Tables* tables, struct ChoiceParams choice, const RgbRow* later,
+                        int x_begin, int x_end, int y) {
   const Window from = w->across;
   const Pass pass = pass_from(&from, 0);
   const size_t plane = w->down.plane;
@@ -358,8 +358,8 @@ SHARED void across_empty(const Windows* w, int x_begin, int x_end, int y) {
 }
 
 // Any cells of one row.
-SHARED void across_any(const Windows* w, const struct FrameParams* f, const Tables* tables, const RgbRow* later, int x_begin, int x_end,
-                       int y) {
+SHARED void across_any(const Windows* w, const struct FrameParams* f, const Tables* tables, const RgbRow* later,
+                       int x_begin, int x_end, int y) {
   const Pass pass = pass_from(&w->across, 0);
   const size_t plane = w->down.plane;
   global float* to = w->down.light + pixel_at(&w->down, 0, y);
@@ -372,8 +372,8 @@ SHARED void across_any(const Windows* w, const struct FrameParams* f, const Tabl
 }
 
 // Cells of one row of uniform light: a term is its sum times the light.
-SHARED void across_uniform(const Windows* w, const Tables* tables, const Sight* sight, const RgbRow* later,
-                           int x_begin, int x_end, int y) {
+SHARED void across_uniform(const Windows* w, const Tables* tables, const Sight* sight, const RgbRow* later, int x_begin,
+                           int x_end, int y) {
   const vrgb light = {(vfloat)(sight->light[0]), (vfloat)(sight->light[1]), (vfloat)(sight->light[2])};
   for (int x = x_begin; x < x_end; x += V) {
     fetch_rgb_ahead(later, x);
@@ -745,10 +745,27 @@ static inline Windows windows_of(const struct FrameParams* f, const Tables* tabl
   return w;
 }
 
+// Whether a cell has changed that the light of a tile may depend on.
+static inline int any_changed(const struct FrameParams* f, const Windows* w, global const uchar* changed) {
+  // The shape of a cell is that of what lies within 9/8 of its taps.
+  const int more_x = w->reach_x / 8 + CELL;
+  const int more_y = w->reach_y / 8 + CELL;
+  const int x_end = min(w->across.x_end + more_x, f->width);
+  const int y_end = min(w->across.y_end + more_y, f->height);
+  for (int cy = max(w->across.y_begin - more_y, 0) / CELL; cy * CELL < y_end; ++cy) {
+    for (int cx = max(w->across.x_begin - more_x, 0) / CELL; cx * CELL < x_end; ++cx) {
+      if (changed[(size_t)cy * f->cells_x + cx]) return 1;
+    }
+  }
+  return 0;
+}
+
+// `changed`: of each cell, whether it is another one than in the frame before, whose light is held; not looked at
+// unless `reuses`.
 static inline int scatter_tile(const struct FrameParams* f, const Inputs* in, const Outputs* out, const Tables* tables,
                                global const struct CellParams* cells, int tile, global uchar* memory,
-                               size_t across_plane, size_t down_plane, int copies, int skips, global float* held,
-                               int* bad_pixels) {
+                               size_t across_plane, size_t down_plane, int copies, int skips, int reuses,
+                               global const uchar* changed, global float* held, int* bad_pixels) {
   const int x_begin = tile % f->tiles_x * f->tile_width;
   const int x_end = min(x_begin + f->tile_width, f->width);
   const int y_begin = tile / f->tiles_x * f->tile_height;
@@ -767,6 +784,7 @@ static inline int scatter_tile(const struct FrameParams* f, const Inputs* in, co
     return narrow > 0 ? TILE_NARROW : TILE_WITHOUT_MATERIAL;
   }
   const Windows w = windows_of(f, tables, x_begin, x_end, y_begin, y_end, memory, across_plane, down_plane);
+  if (reuses && !any_changed(f, &w, changed)) return TILE_REUSED;
   const Sight sight = scatter_rows(&w, f, in, out, tables, copies, skips, held);
   *bad_pixels += sight.bad_pixels;
   if (skips && sight.last_varied < w.y_begin) {
@@ -778,8 +796,8 @@ static inline int scatter_tile(const struct FrameParams* f, const Inputs* in, co
 kernel void scatter(struct FrameParams f, global const struct MaterialParams* materials,
                     global const struct TermParams* terms, global const struct RungParams* rungs,
                     global const int* offsets, global const struct WeightParams* weights,
-                    global const struct FlatWeight* flat_weights,
-                    global const struct SmoothWeight* smooth_weights, global const struct RotationParams* rotations,
+                    global const struct FlatWeight* flat_weights, global const struct SmoothWeight* smooth_weights,
+                    global const struct RotationParams* rotations,
                     uint seed,                                                                              //
                     global const uchar* surface, global const struct CellParams* cells,                     //
                     global const struct CellPasses* passes,                                                 //
@@ -790,12 +808,14 @@ kernel void scatter(struct FrameParams f, global const struct MaterialParams* ma
                     global const uchar* beauty, struct ImageParams beauty_at,                               //
                     global uchar* scattered, struct ImageParams scattered_at, int writes_scattered,         //
                     global uchar* result, struct ImageParams result_at, int writes_result, int zeroes_bad,  //
-                    int copies, int skips, int holds, global float* held, global uchar* memory, long across_plane,
-                    long down_plane, int workers, global uchar* kinds, global volatile int* counters) {
+                    int copies, int skips, int holds, global float* held, int reuses, global const uchar* changed,
+                    global uchar* memory, long across_plane, long down_plane, int workers, global uchar* kinds,
+                    global volatile int* counters) {
   const Inputs in = {light, albedo, depth, mask, light_at, albedo_at, depth_at, mask_at, surface};
   const Outputs out = {beauty,    scattered,        result,        beauty_at, scattered_at,
                        result_at, writes_scattered, writes_result, zeroes_bad};
-  const Tables tables = {materials, terms, rungs, offsets, weights, flat_weights, smooth_weights, rotations, passes, seed};
+  const Tables tables = {materials,    terms,          rungs,     offsets, weights,
+                         flat_weights, smooth_weights, rotations, passes,  seed};
   // There are more work-items than workers, as a device may give several to one thread; the first ones do the work.
   global uchar* own_memory = 0;
   int bad = 0;
@@ -810,7 +830,7 @@ kernel void scatter(struct FrameParams f, global const struct MaterialParams* ma
     const int tile = atomic_inc(counters + COUNTER_NEXT_TILE);
     if (tile >= f.tiles_x * f.tiles_y) break;
     kinds[tile] = scatter_tile(&f, &in, &out, &tables, cells, tile, own_memory, across_plane, down_plane,
-                               copies && !holds, skips, holds ? held : 0, &bad);
+                               copies && !holds, skips, reuses, changed, holds ? held : 0, &bad);
   }
   if (bad > 0) atomic_add(counters + COUNTER_BAD, bad);
 }

@@ -19,6 +19,7 @@
 #include "dermis/version.hpp"
 #include "design_arguments.hpp"
 #include "filter_arguments.hpp"
+#include "filter_session.hpp"
 #include "loaded_frame.hpp"
 #include "output_file.hpp"
 #include "picture_png.hpp"
@@ -146,20 +147,20 @@ void check_tiles(const FilterArguments& arguments, const StatsReport& report) {
                 "a device that works tile by tile, as a CPU");
 }
 
-Plan make_plan(const Device& device, const std::vector<NamedProfile>& profiles, const Frame& frame,
+void make_plan(FilterSession& session, const std::vector<NamedProfile>& profiles, const Frame& frame,
                const Options& options) {
   try {
-    return {device, materials_of(profiles), FrameDescription::of(frame), options};
+    session.plan(materials_of(profiles), FrameDescription::of(frame), options);
   } catch (const Error& error) {
     throw named_as_option(error);
   }
 }
 
 /// The progress bar goes before anything else is printed.
-Stats run_plan(const Plan& plan, const Frame& frame) {
+Stats run_plan(FilterSession& session, const Frame& frame) {
   ProgressBar bar;
   try {
-    return plan.run(frame, [&](double share) {
+    return session.run(frame, [&](double share) {
       bar.update(share);
       return true;
     });
@@ -241,7 +242,8 @@ Frame frame_of(Input& input, const StatsReport& report, double mm_per_unit) {
   return frame;
 }
 
-int run_filter(const FilterArguments& arguments) {
+/// One picture. The device is opened when the first one has been read.
+void filter_picture(const FilterArguments& arguments, std::optional<FilterSession>& session) {
   Stopwatch whole;
   Stopwatch step;
   StatsReport report;
@@ -254,14 +256,14 @@ int run_filter(const FilterArguments& arguments) {
   const Frame frame = frame_of(input, report, *arguments.picture.mm_per_unit);
   report.times.read_ms = step.lap_ms();
 
-  const Device device = Device::open(arguments.device, arguments.threads);
-  report.device = device.info();
+  if (!session) session.emplace(Device::open(arguments.device, arguments.threads), arguments.reuse);
+  report.device = session->device().info();
   if (is_automatic(arguments)) follow_tolerance(arguments, profiles, report);
   check_tiles(arguments, report);
-  const Plan plan = make_plan(device, profiles, frame, report.options);
+  make_plan(*session, profiles, frame, report.options);
   report.times.plan_ms = step.lap_ms();
 
-  report.stats = run_plan(plan, frame);
+  report.stats = run_plan(*session, frame);
   warn_of_bad_pixels(report.stats, report.options.bad_pixels);
   report.times.run_ms = step.lap_ms();
 
@@ -270,6 +272,19 @@ int run_filter(const FilterArguments& arguments) {
   report.times.total_ms = whole.lap_ms();
   if (!arguments.tile_map.empty()) fmt::print("{}", legend_of(report.stats.tiles));
   print_stats(arguments, profiles, report);
+}
+
+int run_filter(const FilterArguments& arguments) {
+  options_of(arguments);  // what is wrong with all of them is said before any is written
+  const std::vector<FilterArguments> pictures = one_by_one(arguments);
+  std::optional<FilterSession> session;
+  for (const FilterArguments& picture : pictures) {
+    if (pictures.size() > 1 && (arguments.stats || !arguments.tile_map.empty())) fmt::print("{}\n", picture.output);
+    filter_picture(picture, session);
+    if (pictures.size() > 1) {
+      fmt::print(stderr, "dermis: {} of {}: {}\n", &picture - pictures.data() + 1, pictures.size(), picture.output);
+    }
+  }
   return 0;
 }
 

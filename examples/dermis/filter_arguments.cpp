@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 
 #include <cstdint>
+#include <filesystem>
 #include <limits>
+#include <map>
+#include <utility>
 
 #include "bad_pixels_argument.hpp"
 #include "dermis/error.hpp"
@@ -49,19 +52,22 @@ void add_device_arguments(CLI::App& app, FilterArguments& arguments) {
 }
 
 void add_output_arguments(CLI::App& app, FilterArguments& arguments) {
-  app.add_option("-o,--output", arguments.output, "the OpenEXR file to write; may be the one that is read")
+  app.add_option(
+         "-o,--output", arguments.output,
+         "the OpenEXR file to write; may be the one that is read. For several pictures this and the other outputs "
+         "are folders, in which files have the names of the inputs")
       ->required()
-      ->check(file_name_ending({".exr"}))
+      ->check(folder_or_file_ending({".exr"}))
       ->type_name("OUT.exr");
   app.add_option("--compression", arguments.compression,
                  "of the result; else that of the input, or zip if that loses data")
       ->check(one_of({"none", "rle", "zip", "zips", "piz", "pxr24", "b44", "b44a", "dwaa", "dwab"}));
   app.add_option("--preview", arguments.preview, "also write the filtered beauty as sRGB")
-      ->check(file_name_ending({".png"}))
+      ->check(folder_or_file_ending({".png"}))
       ->type_name("FILE.png");
   app.add_option("--tile-map", arguments.tile_map,
                  "also draw what became of each tile, over the dimmed light, and print what the colours mean")
-      ->check(file_name_ending({".png"}))
+      ->check(folder_or_file_ending({".png"}))
       ->type_name("FILE.png");
   app.add_flag("--stats", arguments.stats, "print times, and what was computed and skipped");
   app.add_option("--stats-json", arguments.stats_json, "write the same as JSON; - is standard output")
@@ -95,12 +101,57 @@ void check_quality(const FilterArguments& arguments) {
 }  // namespace
 
 void add_filter_arguments(CLI::App& app, FilterArguments& arguments) {
-  add_picture_arguments(app, arguments.picture);
+  app.add_option("file", arguments.inputs, "the OpenEXR files to read: one, or those of a sequence in their order")
+      ->required()
+      ->type_name("FILE");
+  app.add_flag("--reuse", arguments.reuse,
+               "of a sequence: tiles of which nothing within reach has changed keep the light of the picture before");
+  add_reading_arguments(app, arguments.picture);
   add_output_arguments(app, arguments);
   add_material_arguments(app, arguments.materials);
   add_method_arguments(app, arguments);
   add_bad_pixels_argument(app, arguments.bad_pixels);
   add_device_arguments(app, arguments);
+}
+
+std::vector<FilterArguments> one_by_one(const FilterArguments& arguments) {
+  const std::size_t count = arguments.inputs.size();
+  if (arguments.reuse && count == 1) throw Error(ErrorCode::usage, "--reuse", "one picture", "several, of a sequence");
+  struct Output {
+    const char* argument;
+    std::string FilterArguments::*path;
+    const char* ending;
+  };
+  constexpr Output outputs[] = {{"--output", &FilterArguments::output, ".exr"},
+                                {"--preview", &FilterArguments::preview, ".png"},
+                                {"--tile-map", &FilterArguments::tile_map, ".png"},
+                                {"--stats-json", &FilterArguments::stats_json, ".json"}};
+  std::vector<FilterArguments> all;
+  std::map<std::string, std::string> taken;  // outputs, and whose they are
+  for (const std::string& input : arguments.inputs) {
+    FilterArguments one = arguments;
+    one.inputs = {input};
+    one.picture.path = input;
+    for (const auto& [argument, path, ending] : outputs) {
+      std::string& its_path = one.*path;
+      if (its_path.empty() || its_path == "-") continue;
+      const bool is_folder = std::filesystem::is_directory(its_path);
+      if (count == 1 && is_folder)
+        throw Error(ErrorCode::usage, argument, its_path,
+                    fmt::format("a file name that ends in {}, for one picture", ending));
+      if (count == 1) continue;
+      if (!is_folder)
+        throw Error(ErrorCode::usage, argument, its_path, fmt::format("a folder that exists, for {} pictures", count));
+      const std::string name = std::filesystem::path(input).stem().string() + ending;
+      its_path = (std::filesystem::path(its_path) / name).string();
+      const auto [other, is_new] = taken.emplace(argument + its_path, input);
+      if (!is_new)
+        throw Error(ErrorCode::usage, argument, fmt::format("{} for {} and {}", its_path, other->second, input),
+                    "inputs of different names");
+    }
+    all.push_back(std::move(one));
+  }
+  return all;
 }
 
 bool is_exact(const FilterArguments& arguments) {

@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <string>
+#include <vector>
 
 #include "dermis/plan.hpp"
 #include "design_arguments.hpp"
@@ -13,9 +14,11 @@
 namespace dermis::program {
 
 struct FilterArguments {
-  PictureArguments picture;
+  std::vector<std::string> inputs;
+  bool reuse = false;
+  PictureArguments picture;  ///< the path is one of the inputs
   MaterialArguments materials;
-  std::string output;
+  std::string output;  ///< like preview, tile_map and stats_json a folder if there are several inputs
   std::string compression;
   std::string preview;
   std::string tile_map;
@@ -32,6 +35,10 @@ struct FilterArguments {
 };
 
 void add_filter_arguments(CLI::App& app, FilterArguments& arguments);
+
+/// The arguments for each input by itself: the outputs are files, in the folders that were named if there are several.
+/// Throws Error(usage) if the names of outputs do not fit the number of inputs, or two outputs have one name.
+std::vector<FilterArguments> one_by_one(const FilterArguments& arguments);
 
 /// True if the method is exact, by its name or by the quality.
 bool is_exact(const FilterArguments& arguments);

@@ -6,6 +6,10 @@ namespace dermis::program {
 
 void add_picture_arguments(CLI::App& app, PictureArguments& arguments) {
   app.add_option("file", arguments.path, "the OpenEXR file to read")->required()->type_name("FILE");
+  add_reading_arguments(app, arguments);
+}
+
+void add_reading_arguments(CLI::App& app, PictureArguments& arguments) {
   app.add_option("--role", arguments.roles,
                  "take light, albedo, depth, position, normal, material, mask, specular or beauty from these channels "
                  "(1 or 3 names with commas, or one prefix; + adds); repeatable")

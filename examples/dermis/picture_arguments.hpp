@@ -20,4 +20,7 @@ struct PictureArguments {
 
 void add_picture_arguments(CLI::App& app, PictureArguments& arguments);
 
+/// All but the path.
+void add_reading_arguments(CLI::App& app, PictureArguments& arguments);
+
 }  // namespace dermis::program

@@ -27,7 +27,8 @@ constexpr std::array<KindLook, tile_kinds> looks = {{{"without material", "grey"
                                                      {"uniform", "green", {0, 0.5F, 0.1F}},
                                                      {"flat", "yellow", {1, 0.8F, 0}},
                                                      {"smooth", "orange", {1, 0.3F, 0}},
-                                                     {"curved", "red", {1, 0.05F, 0.02F}}}};
+                                                     {"curved", "red", {1, 0.05F, 0.02F}},
+                                                     {"reused", "white", {1, 1, 1}}}};
 
 const KindLook& look_of(TileKind kind) { return looks[static_cast<std::size_t>(kind)]; }
 

@@ -43,4 +43,11 @@ CLI::Validator file_name_ending(std::initializer_list<std::string_view> endings)
           ""};
 }
 
+CLI::Validator folder_or_file_ending(std::initializer_list<std::string_view> endings) {
+  return {[is_file = file_name_ending(endings)](std::string& text) {
+            return std::filesystem::is_directory(text) ? std::string{} : is_file(text);
+          },
+          ""};
+}
+
 }  // namespace dermis::program

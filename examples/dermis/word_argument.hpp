@@ -16,4 +16,7 @@ CLI::Validator one_of(std::initializer_list<std::string_view> words);
 /// A file name with one of these endings, in any case.
 CLI::Validator file_name_ending(std::initializer_list<std::string_view> endings);
 
+/// The same, or a folder that exists.
+CLI::Validator folder_or_file_ending(std::initializer_list<std::string_view> endings);
+
 }  // namespace dermis::program

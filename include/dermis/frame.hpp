@@ -70,6 +70,8 @@ struct Camera {
   static Camera orthographic(double px_per_unit_x, double px_per_unit_y) {
     return {Projection::orthographic, px_per_unit_x, px_per_unit_y, 0, 0};
   }
+
+  bool operator==(const Camera&) const = default;
 };
 
 /// One G-buffer. All images have the frame's size. A pixel whose depth is not finite, not above 0 (perspective) or

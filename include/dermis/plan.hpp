@@ -27,6 +27,8 @@ struct Material {
   int id = 0;  ///< 0..65535; ignored if the frame has no material ids
   Profile profile;
   std::optional<TapsDesign> taps = {};  ///< in place of Options::taps
+
+  bool operator==(const Material&) const = default;
 };
 
 enum class Method {
@@ -59,6 +61,8 @@ struct Options {
   /// Pixels of a tile: a multiple of 16 across; 0 = what suits the device. The result does not depend on it.
   int tile_width = 0;
   int tile_height = 0;
+
+  bool operator==(const Options&) const = default;
 };
 
 /// The images that the frames of a plan have. No code is built for what they do not have.
@@ -87,8 +91,9 @@ enum class TileKind : std::uint8_t {
   flat,              ///< filtered without depth terms
   smooth,            ///< filtered without the depth of taps
   curved,            ///< filtered
+  reused,            ///< skipped: nothing within reach has changed since the frame before
 };
-inline constexpr int tile_kinds = 7;
+inline constexpr int tile_kinds = 8;
 
 /// What became of each tile, row by row.
 struct TileMap {
@@ -142,6 +147,22 @@ class Event {
   cl_event event_;
 };
 
+/// What one frame of a sequence leaves for the next one: the light after scattering, 12 bytes per pixel, and a hash of
+/// the inputs of each 16 x 16 pixels. For one thread at a time.
+class Reuse {
+ public:
+  Reuse();
+  ~Reuse();
+  Reuse(Reuse&&) noexcept;
+  Reuse& operator=(Reuse&&) noexcept;
+
+  struct State;  ///< not for callers
+
+ private:
+  friend class Plan;
+  std::unique_ptr<State> state_;
+};
+
 /// A filter, built. Immutable; may be used from several threads at once.
 class Plan {
  public:
@@ -159,6 +180,12 @@ class Plan {
   /// Returns without writing anything if `progress` returned false.
   Stats run(const Frame& frame, const Progress& progress = {}) const;
 
+  /// The same for the next frame of a sequence: tiles of which nothing within reach has changed since the last run with
+  /// `reuse` take the light of that run, with the same bits. All is computed if there was none, if it was of another
+  /// plan, size, camera or scale or failed, and always if the method is exact or the device works pixel by pixel. Bad
+  /// pixels are counted, and refused, in tiles that are filtered.
+  Stats run(const Frame& frame, Reuse& reuse, const Progress& progress = {}) const;
+
   /// Puts the same work on the caller's queue, which is of the plan's context and device, to start after the events in
   /// `wait_for`. All images are buffers. Never blocks.
   Event enqueue(const Frame& frame, cl_command_queue queue, std::span<const cl_event> wait_for = {}) const;
@@ -169,6 +196,8 @@ class Plan {
   struct State;  ///< not for callers
 
  private:
+  Stats run(const Frame& frame, Reuse::State* reuse, const Progress& progress) const;
+
   std::unique_ptr<const State> state_;
 };
 

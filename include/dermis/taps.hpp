@@ -130,9 +130,10 @@ struct Rung {
   /// centre, then of the first pair, ... Multiples of 2^-24; of a normalised term they sum to exactly 1. The centre's
   /// is used if the term is normalised.
   std::array<std::vector<std::array<float, 3>>, 8> flat_weights;
-  /// What the flat weights of the rung's middle (the fifth eighth) change by on a smooth cell: with the stretch q, of all
-  /// terms of the centre, then of the first pair, ... Multiples of 2^-20, which sum to exactly 0 in every term; and with
-  /// the skew k, of all terms of the first pair, ..., for the tap at + of a pair, the other one changing by the opposite.
+  /// What the flat weights of the rung's middle (the fifth eighth) change by on a smooth cell: with the stretch q, of
+  /// all terms of the centre, then of the first pair, ... Multiples of 2^-20, which sum to exactly 0 in every term; and
+  /// with the skew k, of all terms of the first pair, ..., for the tap at + of a pair, the other one changing by the
+  /// opposite.
   std::vector<std::array<float, 3>> stretch_weights;
   std::vector<std::array<float, 3>> skew_weights;
 };
@@ -181,8 +182,8 @@ struct Rung {
 ///     q = rung.footprint^2 |T|^2 - 1,  k = rung.footprint^2 T.T'    both held within -most_stretch..most_stretch and
 ///                                                                 -most_skew / last offset..most_skew / last offset
 ///
-/// where T is the pixel's own change of position along the pass and T' that of T, both by central differences of depth (of
-/// the difference to the only neighbour of the same material if the other one is of another; 0 if there is none).
+/// where T is the pixel's own change of position along the pass and T' that of T, both by central differences of depth
+/// (of the difference to the only neighbour of the same material if the other one is of another; 0 if there is none).
 struct Taps {
   /// The radius, mm, beyond which the passes do not look: 99.9 % of the widest channel's marginal lie within for rank
   /// 1, 99.99 % for rank 2, 99.999 % for more.

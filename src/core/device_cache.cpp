@@ -16,6 +16,7 @@ std::size_t DeviceCache::bytes_of(const Taps& taps) {
   for (const Rung& rung : taps.rungs) {
     sum += bytes(rung.core_gain) + bytes(rung.offsets_px) + bytes(rung.weights);
     for (const auto& weights : rung.flat_weights) sum += bytes(weights);
+    sum += bytes(rung.stretch_weights) + bytes(rung.skew_weights);
   }
   return sum;
 }

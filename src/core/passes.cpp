@@ -5,7 +5,10 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <string>
 #include <utility>
+
+#include "core/program.hpp"
 
 namespace dermis {
 
@@ -92,7 +95,7 @@ RunSizes run_sizes(const Plan::State& plan, int width, int height) {
 }
 
 Passes::Passes(const Plan::State& plan, const Frame& frame, const BoundImages& images, RunMemory& memory,
-               cl::CommandQueue queue, std::span<const cl_event> wait_for)
+               cl::CommandQueue queue, std::span<const cl_event> wait_for, Reuse::State* reuse)
     : plan_(plan),
       images_(images),
       memory_(memory),
@@ -103,7 +106,9 @@ Passes::Passes(const Plan::State& plan, const Frame& frame, const BoundImages& i
               0,
               frame.height,
               std::numeric_limits<int>::max(),
-              memory.sizes.stride()} {
+              memory.sizes.stride()},
+      reuse_(plan.tiled ? reuse : nullptr),
+      follows_(reuse_ != nullptr && reuse_->continues(plan, memory.sizes, frame)) {
   for (const cl_event event : wait_for) last_.emplace_back(event, true);
   const cl::Context context(plan.device.context(), true);
   const bool light_is_scattered = plan.options.lighting == Lighting::raw && plan.options.albedo_mix == 0;
@@ -111,11 +116,12 @@ Passes::Passes(const Plan::State& plan, const Frame& frame, const BoundImages& i
              !(light_is_scattered && images.in_place(ImageName::scattered, ImageName::light))) ||
             (images.has(ImageName::result) && !images.in_place(ImageName::result, ImageName::beauty)) ||
             plan.options.bad_pixels == BadPixels::zero;
-  holds_ = plan.options.bad_pixels == BadPixels::error;
+  holds_ = plan.options.bad_pixels == BadPixels::error || reuse_ != nullptr;
   for (const ImageName input : {ImageName::light, ImageName::albedo, ImageName::depth, ImageName::mask}) {
     holds_ = holds_ || images.output_over(input);
   }
-  if (holds_) memory.need_held(context);
+  if (holds_ && reuse_ == nullptr) memory.need_held(context);
+  held_ = reuse_ != nullptr ? reuse_->held : memory.held;
   if (plan.options.jitter > 0) {
     auto table = rotations(frame.camera);
     rotations_ = cl::Buffer(context, CL_MEM_READ_ONLY | CL_MEM_COPY_HOST_PTR, sizeof(table), table.data());
@@ -151,9 +157,25 @@ void Passes::classify() {
                 memory_.surface, memory_.cells);
   events_.classify.push_back(launch(survey, columns, params_.cells_y, 1));
   cl::Kernel choose(plan_.classify_program, "choose_passes");
-  set_arguments(choose, params_, cells_per_item, plan_.materials, plan_.rungs, memory_.cells, memory_.passes, memory_.counters);
+  set_arguments(choose, params_, cells_per_item, plan_.materials, plan_.rungs, memory_.cells, memory_.passes,
+                memory_.counters);
   events_.classify.push_back(launch(choose, columns, params_.cells_y, 1));
+  if (reuse_ != nullptr) compare_with_frame_before();
   if (!plan_.tiled) prepare();
+}
+
+void Passes::compare_with_frame_before() {
+  const cl::Program program =
+      build_program(plan_.device, {"fingerprint.cl"}, plan_.build_options + " -DV=" + std::to_string(CELL));
+  cl::Kernel kernel(program, "fingerprint");
+  set_arguments(kernel, params_, params_.cells_x,                                          //
+                images_.buffer(ImageName::light), images_.layout(ImageName::light),        //
+                images_.buffer(ImageName::albedo), images_.layout(ImageName::albedo),      //
+                images_.buffer(ImageName::depth), images_.layout(ImageName::depth),        //
+                images_.buffer(ImageName::material), images_.layout(ImageName::material),  //
+                images_.buffer(ImageName::mask), images_.layout(ImageName::mask),          //
+                reuse_->fingerprints, follows_ ? 0 : 1, reuse_->changed);
+  events_.classify.push_back(launch(kernel, 1, params_.cells_y, 1));
 }
 
 void Passes::prepare() {
@@ -198,21 +220,22 @@ void Passes::scatter(int step) {
 void Passes::scatter_tiles() {
   cl::Kernel kernel(plan_.program, "scatter");
   const auto flag = [](bool value) { return value ? 1 : 0; };
-  set_arguments(kernel, params_, plan_.materials, plan_.terms, plan_.rungs, plan_.offsets, plan_.weights,
-                plan_.flat_weights, plan_.smooth_weights, rotations_, plan_.options.seed, memory_.surface, memory_.cells, memory_.passes,  //
-                images_.buffer(ImageName::light), images_.layout(ImageName::light),                                  //
-                images_.buffer(ImageName::albedo), images_.layout(ImageName::albedo),                                //
-                images_.buffer(ImageName::depth), images_.layout(ImageName::depth),                                  //
-                images_.buffer(ImageName::mask), images_.layout(ImageName::mask),                                    //
-                images_.buffer(ImageName::beauty), images_.layout(ImageName::beauty),                                //
-                images_.buffer(ImageName::scattered), images_.layout(ImageName::scattered),                          //
-                flag(images_.has(ImageName::scattered)),                                                             //
-                images_.buffer(ImageName::result), images_.layout(ImageName::result),                                //
-                flag(images_.has(ImageName::result)), flag(plan_.options.bad_pixels == BadPixels::zero),             //
-                flag(copies_), flag(plan_.options.skip_uniform_light), flag(holds_), memory_.held,                   //
-                memory_.windows, static_cast<cl_long>(memory_.sizes.across_plane()),                                 //
-                static_cast<cl_long>(memory_.sizes.down_plane()), memory_.sizes.workers, memory_.kinds,
-                memory_.counters);
+  set_arguments(
+      kernel, params_, plan_.materials, plan_.terms, plan_.rungs, plan_.offsets, plan_.weights, plan_.flat_weights,
+      plan_.smooth_weights, rotations_, plan_.options.seed, memory_.surface, memory_.cells, memory_.passes,  //
+      images_.buffer(ImageName::light), images_.layout(ImageName::light),                                    //
+      images_.buffer(ImageName::albedo), images_.layout(ImageName::albedo),                                  //
+      images_.buffer(ImageName::depth), images_.layout(ImageName::depth),                                    //
+      images_.buffer(ImageName::mask), images_.layout(ImageName::mask),                                      //
+      images_.buffer(ImageName::beauty), images_.layout(ImageName::beauty),                                  //
+      images_.buffer(ImageName::scattered), images_.layout(ImageName::scattered),                            //
+      flag(images_.has(ImageName::scattered)),                                                               //
+      images_.buffer(ImageName::result), images_.layout(ImageName::result),                                  //
+      flag(images_.has(ImageName::result)), flag(plan_.options.bad_pixels == BadPixels::zero),               //
+      flag(copies_), flag(plan_.options.skip_uniform_light), flag(holds_), held_, flag(follows_),            //
+      reuse_ != nullptr ? reuse_->changed : memory_.kinds,                                                   //
+      memory_.windows, static_cast<cl_long>(memory_.sizes.across_plane()),                                   //
+      static_cast<cl_long>(memory_.sizes.down_plane()), memory_.sizes.workers, memory_.kinds, memory_.counters);
   // A device may give a thread several work-items in one go.
   constexpr int items_per_worker = 8;
   events_.scatter.push_back(launch(kernel, items_per_worker * memory_.sizes.workers, 1, 1));
@@ -223,8 +246,8 @@ void Passes::scatter_pixels() {
   for (const char* name : {"scatter_x", "scatter_y"}) {
     cl::Kernel kernel(plan_.program, name);
     set_arguments(kernel, params_, window_, plan_.materials, plan_.terms, plan_.rungs, plan_.offsets, plan_.weights,
-                  plan_.flat_weights, plan_.smooth_weights, rotations_, plan_.options.seed, memory_.passes, memory_.windows, plane,
-                  memory_.between, memory_.segments);
+                  plan_.flat_weights, plan_.smooth_weights, rotations_, plan_.options.seed, memory_.passes,
+                  memory_.windows, plane, memory_.between, memory_.segments);
     if (events_.scatter.size() == 1) kernel.setArg(16, memory_.held);
     events_.scatter.push_back(launch(kernel, params_.width, params_.height, 0));
   }
@@ -250,7 +273,7 @@ void Passes::finish() {
                 flag(images_.has(ImageName::scattered)),                                                  //
                 images_.buffer(ImageName::result), images_.layout(ImageName::result),                     //
                 flag(images_.has(ImageName::result)), flag(plan_.options.bad_pixels == BadPixels::zero),  //
-                flag(copies_ || !plan_.tiled), memory_.held, memory_.kinds, memory_.passes,
+                flag(copies_ || !plan_.tiled), held_, memory_.kinds, memory_.passes,
                 plan_.item_is_pixel ? 1 : params_.width);
   events_.finish.push_back(launch(kernel, runs(), params_.height, plan_.item_is_pixel ? 0 : 1));
 }

@@ -7,6 +7,7 @@
 
 #include "core/frame_images.hpp"
 #include "core/plan_state.hpp"
+#include "core/reuse.hpp"
 #include "core/run_memory.hpp"
 
 namespace dermis {
@@ -25,8 +26,9 @@ RunSizes run_sizes(const Plan::State& plan, int width, int height);
 /// one before it; none blocks.
 class Passes {
  public:
+  /// `reuse`: of the frame before, or null.
   Passes(const Plan::State& plan, const Frame& frame, const BoundImages& images, RunMemory& memory,
-         cl::CommandQueue queue, std::span<const cl_event> wait_for);
+         cl::CommandQueue queue, std::span<const cl_event> wait_for, Reuse::State* reuse = nullptr);
 
   void classify();
   /// The number of steps that `scatter` is cut into.
@@ -47,6 +49,7 @@ class Passes {
  private:
   cl::Event launch(cl::Kernel& kernel, int columns, int rows, int local);
   void prepare();
+  void compare_with_frame_before();
   void scatter_tiles();
   void scatter_pixels();
   void scatter_exactly(int first_row, int rows);
@@ -59,11 +62,14 @@ class Passes {
   cl::CommandQueue queue_;
   params::FrameParams params_;
   params::WindowParams window_;  ///< the frame
+  Reuse::State* reuse_;
+  bool follows_;  ///< the frame before is one that this may take light from
   bool holds_;
   bool copies_;
   std::vector<cl::Event> last_;  ///< what the next launch waits for
   StepEvents events_;
   cl::Buffer rotations_;
+  cl::Buffer held_;  ///< light that waits for its output
 };
 
 }  // namespace dermis

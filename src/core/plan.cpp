@@ -85,12 +85,12 @@ int vector_width(const Plan::State& state) { return state.item_is_pixel ? 1 : st
 /// functions: all kernels are in one if they have vectors of the same width.
 bool is_one_program(const Plan::State& state) { return vector_width(state) == CELL; }
 
-cl::Program build_classification(const Plan::State& state, const std::string& common) {
-  return build_program(state.device, {"survey.cl"}, common + define("V", CELL));
+cl::Program build_classification(const Plan::State& state) {
+  return build_program(state.device, {"survey.cl"}, state.build_options + define("V", CELL));
 }
 
 /// The passes, and the classification too if they are in one program.
-cl::Program build_passes(const Plan::State& state, const std::string& common) {
+cl::Program build_passes(const Plan::State& state) {
   std::vector<std::string> files = {"finish.cl"};
   if (state.tiled) {
     files.emplace_back("tile.cl");
@@ -100,8 +100,8 @@ cl::Program build_passes(const Plan::State& state, const std::string& common) {
   }
   if (is_one_program(state)) files.emplace_back("survey.cl");
   return build_program(state.device, files,
-                       common + define("V", vector_width(state)) + define("TERMS", state.terms_per_material) +
-                           define("TILED", state.tiled ? 1 : 0) +
+                       state.build_options + define("V", vector_width(state)) +
+                           define("TERMS", state.terms_per_material) + define("TILED", state.tiled ? 1 : 0) +
                            define("LIT", state.options.lighting == Lighting::lit ? 1 : 0) +
                            define("TABLE_SHIFT", 23 - log2_nodes_per_octave_of_exact));
 }
@@ -194,13 +194,13 @@ Plan::Plan(const Device& device, std::vector<Material> materials, const FrameDes
   state->has_pixel_width = frames.mask || follows_albedo;
   state->item_is_pixel = device.info().type == "GPU";
   state->tiled = !state->item_is_pixel && options.method == Method::separable;
-  const std::string common = common_options(*state, static_cast<int>(materials.size()));
+  state->build_options = common_options(*state, static_cast<int>(materials.size()));
   with_device_errors([&] {
     const cl::Context context(device.context(), true);
     // The kernels are built while the taps are fitted.
     state->terms_per_material = most_terms(device, materials, options);
     const auto async = [&](auto build) {
-      return std::async(std::launch::async, [&, build] { return build(*state, common); }).share();
+      return std::async(std::launch::async, [&, build] { return build(*state); }).share();
     };
     const auto passes = async(build_passes);
     const auto classification = is_one_program(*state) ? passes : async(build_classification);
@@ -226,7 +226,13 @@ Plan::~Plan() = default;
 Plan::Plan(Plan&&) noexcept = default;
 Plan& Plan::operator=(Plan&&) noexcept = default;
 
-Stats Plan::run(const Frame& frame, const Progress& progress) const {
+Stats Plan::run(const Frame& frame, const Progress& progress) const { return run(frame, nullptr, progress); }
+
+Stats Plan::run(const Frame& frame, Reuse& reuse, const Progress& progress) const {
+  return run(frame, reuse.state_.get(), progress);
+}
+
+Stats Plan::run(const Frame& frame, Reuse::State* reuse, const Progress& progress) const {
   const auto start = std::chrono::steady_clock::now();
   const auto milliseconds_since_start = [&] {
     return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
@@ -239,7 +245,7 @@ Stats Plan::run(const Frame& frame, const Progress& progress) const {
     const BoundImages bound(context, frame, images);
     // Whatever ends the run, the device must be done with the caller's memory first.
     const BorrowedMemory memory(state_->memories, context, queue, run_sizes(*state_, frame.width, frame.height));
-    Passes passes(*state_, frame, bound, *memory, queue, {});
+    Passes passes(*state_, frame, bound, *memory, queue, {}, reuse);
     Stats stats;
     stats.prepare_ms = milliseconds_since_start();
     passes.classify();
@@ -259,6 +265,7 @@ Stats Plan::run(const Frame& frame, const Progress& progress) const {
     passes.finish();
     bound.read_back(queue);
     passes.add_to(stats);
+    if (reuse != nullptr) reuse->plan = state_->number;
     stats.classify_ms = milliseconds(passes.events().classify);
     stats.scatter_ms = milliseconds(passes.events().scatter);
     stats.finish_ms = milliseconds(passes.events().finish);

@@ -1,7 +1,9 @@
 // What a Plan holds: all that does not depend on a frame.
 #pragma once
 
-#include <vector>
+#include <atomic>
+#include <cstdint>
+#include <string>
 
 #include "core/device.hpp"
 #include "core/run_memory.hpp"
@@ -11,8 +13,10 @@ namespace dermis {
 
 struct Plan::State {
   Device device;
+  std::uint64_t number;  ///< no other plan of the process has it
   FrameDescription description;
   Options options;
+  std::string build_options;  ///< that all kernels share
   cl::Program classify_program;
   cl::Program program;
   cl::Buffer materials;
@@ -30,7 +34,13 @@ struct Plan::State {
   bool tiled = false;            ///< the passes run tile by tile
   mutable RunMemoryPool memories;
 
-  explicit State(const Device& its_device) : device(its_device) {}
+  explicit State(const Device& its_device) : device(its_device), number(next_number()) {}
+
+ private:
+  static std::uint64_t next_number() {
+    static std::atomic<std::uint64_t> last = 0;
+    return ++last;
+  }
 };
 
 }  // namespace dermis

@@ -58,6 +58,8 @@ std::size_t RunSizes::windows_bytes() const {
           band_bytes + across_plane() / CELL * sizeof(params::ChoiceParams));
 }
 
+std::size_t RunSizes::held_bytes() const { return 3 * frame_plane() * sizeof(float); }
+
 std::size_t RunSizes::bytes(bool holds) const {
   const std::size_t cells = static_cast<std::size_t>(cells_x()) * cells_y();
   const std::size_t tiles = static_cast<std::size_t>(tiles_x()) * tiles_y();
@@ -65,7 +67,7 @@ std::size_t RunSizes::bytes(bool holds) const {
   std::size_t sum =
       frame_plane() + cells * (sizeof(params::CellParams) + sizeof(params::CellPasses)) + windows_bytes() + tiles;
   if (workers == 0) sum += (exact ? 3 : 3 * static_cast<std::size_t>(terms) + 1) * plane_bytes;
-  if (holds || workers == 0) sum += 3 * plane_bytes;
+  if (holds || workers == 0) sum += held_bytes();
   return sum;
 }
 
@@ -83,13 +85,13 @@ RunMemory::RunMemory(const cl::Context& context, const RunSizes& wanted) : sizes
   segments = kinds;
   held = kinds;
   if (sizes.workers > 0) return;
-  held = allocate(3 * plane_bytes);
+  held = allocate(sizes.held_bytes());
   between = allocate((sizes.exact ? 3 : 3 * static_cast<std::size_t>(sizes.terms)) * plane_bytes);
   if (!sizes.exact) segments = allocate(plane_bytes);
 }
 
 void RunMemory::need_held(const cl::Context& context) {
-  if (held() == kinds()) held = cl::Buffer(context, CL_MEM_READ_WRITE, 3 * sizes.frame_plane() * sizeof(float));
+  if (held() == kinds()) held = cl::Buffer(context, CL_MEM_READ_WRITE, sizes.held_bytes());
 }
 
 std::unique_ptr<RunMemory> RunMemoryPool::take(const cl::Context& context, const RunSizes& sizes) {

@@ -31,6 +31,7 @@ struct RunSizes {
   std::size_t across_plane() const;  ///< of the window of the horizontal pass
   std::size_t down_plane() const;    ///< of the window of the vertical pass; 0 if the window is the frame
   std::size_t windows_bytes() const;
+  std::size_t held_bytes() const;       ///< of light that waits for its output
   std::size_t bytes(bool holds) const;  ///< of everything
   bool operator==(const RunSizes&) const = default;
 };

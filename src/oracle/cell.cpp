@@ -159,7 +159,8 @@ void Cells::add_kinds(Axis axis, int column, int row, int reach_cells, std::vect
         break;
       case Shape::smooth:
         kinds.push_back(
-            {shape, exact(1) / square_root(variation(axis, column, row, cell.depth_mm, cell.step_mm[axis]).squared_length)});
+            {shape,
+             exact(1) / square_root(variation(axis, column, row, cell.depth_mm, cell.step_mm[axis]).squared_length)});
         break;
       case Shape::curved:
         kinds.push_back({shape, cell.footprint[axis].bounded()});

@@ -30,8 +30,8 @@ struct SurfacePixel {
   bool takes_light_unsure() const { return wide_unsure && !bad; }
 };
 
-/// How a surface differs about a pixel from a plane parallel to the screen of some footprint: q and k of Taps, before they
-/// are held within bounds.
+/// How a surface differs about a pixel from a plane parallel to the screen of some footprint: q and k of Taps, before
+/// they are held within bounds.
 struct Bend {
   Bounded stretch;
   Bounded skew;

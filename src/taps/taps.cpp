@@ -114,8 +114,8 @@ std::vector<double> weights_on_surface(const Rung& rung, const std::vector<Term>
   return weights;
 }
 
-/// The weights of a channel as fitted for the rung, changed as those of a pass change with the size of a pixel. Those of
-/// a normalised term sum to 1; there is none for the centre of another.
+/// The weights of a channel as fitted for the rung, changed as those of a pass change with the size of a pixel. Those
+/// of a normalised term sum to 1; there is none for the centre of another.
 class PlaneWeights {
  public:
   PlaneWeights(const Rung& rung, const std::vector<Term>& terms, const PlacedTaps& placed, int c, double stretch)
@@ -126,8 +126,8 @@ class PlaneWeights {
       double total = 0;
       for (std::size_t row = 0; row < rows; ++row) {
         double& weight = weights_[row * terms_ + t];
-        weight += placed.weights[c](static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(t)) -
-                  nominal[row * terms_ + t];
+        weight +=
+            placed.weights[c](static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(t)) - nominal[row * terms_ + t];
         if (terms[t].normalised) weight = std::max(weight, 0.0);
         total += row == 0 ? weight : 2 * weight;
       }

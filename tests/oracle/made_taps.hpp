@@ -82,8 +82,7 @@ inline void lay_flat(dermis::Taps& taps) {
         };
     const auto share = [&](std::size_t pair, std::size_t t, std::size_t c, double longer) {
       if (!taps.terms[t].normalised) return tap(pair, t, c, longer);
-      const double r_mm =
-          longer * static_cast<double>(rung.core_half_width_px) / static_cast<double>(rung.footprint);
+      const double r_mm = longer * static_cast<double>(rung.core_half_width_px) / static_cast<double>(rung.footprint);
       double sum = static_cast<double>(rung.core_gain[t][c]) * value_of(taps.terms[t].core, c, r_mm);
       for (std::size_t i = 0; i < rung.offsets_px.size(); ++i) sum += 2 * tap(i, t, c, longer);
       return tap(pair, t, c, longer) / sum;

@@ -409,7 +409,7 @@ TEST_CASE("the numbers of --stats-json add up") {
 
   const auto& tiles = stats["tiles"];
   int tiles_of_kinds = 0;
-  for (const char* kind : {"without_material", "narrow", "unlit", "uniform", "flat", "smooth", "curved"}) {
+  for (const char* kind : {"without_material", "narrow", "unlit", "uniform", "flat", "smooth", "curved", "reused"}) {
     tiles_of_kinds += tiles[kind].get<int>();
   }
   CHECK(tiles["total"] == tiles_of_kinds);

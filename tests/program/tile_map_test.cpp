@@ -22,7 +22,7 @@ using Words = std::vector<std::string>;
 
 namespace {
 
-const std::array names = {"without material", "narrow", "unlit", "uniform", "flat", "smooth", "curved"};
+const std::array names = {"without material", "narrow", "unlit", "uniform", "flat", "smooth", "curved", "reused"};
 
 /// What the legend says of one kind.
 struct LegendLine {
