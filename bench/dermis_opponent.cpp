@@ -1,6 +1,7 @@
 // dermis itself, as its callers see it: plan.run on images in host memory.
 #include <cstdint>
 
+#include "aligned.hpp"
 #include "half.hpp"
 #include "opponents.hpp"
 
@@ -24,7 +25,7 @@ class Filter final : public Opponent {
         for (std::size_t c = 0; c < 3; ++c) half_light_[4 * i + c] = half_of(scene.light[c * plane + i]);
       }
     } else if (in_place_) {
-      scattered_ = scene.light;
+      scattered_.assign(scene.light.begin(), scene.light.end());
     } else {
       scattered_.resize(3 * plane);
     }
@@ -33,7 +34,7 @@ class Filter final : public Opponent {
   void run() override { stats_ = plan_.run(frame()); }
 
   std::vector<float> result() override {
-    if (!half_) return scattered_;
+    if (!half_) return {scattered_.begin(), scattered_.end()};
     const std::size_t plane = scene_.pixels();
     std::vector<float> planes(3 * plane);
     for (std::size_t i = 0; i < plane; ++i) {
@@ -73,7 +74,7 @@ class Filter final : public Opponent {
   const Scene& scene_;
   bool half_, in_place_;
   Plan plan_;
-  std::vector<float> scattered_;
+  AlignedFloats scattered_;
   std::vector<std::uint16_t> half_light_, half_scattered_;
   Stats stats_;
 };

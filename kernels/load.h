@@ -108,14 +108,13 @@ typedef struct {
   vint bad;
 } LoadedLight;
 
-// `direct`: all is planar and in the frame, so that there is no call before which registers would be saved.
-FORCED_INLINE LoadedLight load_light(const Window* w, const struct FrameParams* f, const InputRows* rows, int x, int y,
-                                     const int direct) {
+FORCED_INLINE LoadedLight load_light(const Window* w, const struct FrameParams* f, const InputRows* rows, int x,
+                                     int y) {
   const size_t at = pixel_at(w, x, y);
   const vint m = load_bytes(rows->surface + x);
   LoadedLight loaded = {same_rgb((vfloat)(0.0f)), m, (vint)(0)};
   if (any_bit(m)) {
-    const vrgb input = direct ? read_planar_rgb(&rows->light, x) : read_rgb(&rows->light, x);
+    const vrgb input = read_rgb(&rows->light, x);
     const vrgb albedo = read_albedo(rows, x);
     const vrgb value = scattering_light(f, input, albedo);
     loaded.bad = bad_lanes(m, input, albedo, value);

@@ -16,7 +16,7 @@ kernel void prepare(struct FrameParams f, struct WindowParams window, global con
   int count = 0;
   for (int x = x_begin; x < min(x_begin + columns, w.x_end + PADDING); x += V) {
     load_surface(&w, &f, &rows, materials, x, y);
-    const vint bad = load_light(&w, &f, &rows, x, y, 0).bad;
+    const vint bad = load_light(&w, &f, &rows, x, y).bad;
 #define COUNT_LANE(lane) count -= LANE(bad, lane);
     EACH_LANE(COUNT_LANE)
 #undef COUNT_LANE

@@ -107,23 +107,38 @@ typedef struct {
 // coming.
 #define ROWS_AHEAD 2
 
-static inline RgbRow later_light(const Windows* w, const struct FrameParams* f, const Inputs* in, int y) {
-  return rgb_row_of(in->light, &in->light_at, f->width, min(y + ROWS_AHEAD, w->across.y_end - 1));
+// A row that is read later.
+typedef struct {
+  RgbRow light;
+  global const uchar* surface;
+} LaterRow;
+
+static inline LaterRow later_row(const Windows* w, const struct FrameParams* f, const Inputs* in, int y) {
+  const int later_y = min(y + ROWS_AHEAD, w->across.y_end - 1);
+  const LaterRow row = {rgb_row_of(in->light, &in->light_at, f->width, later_y),
+                        in->surface + surface_at(f, 0, later_y)};
+  return row;
 }
 
-// Light of some pixels of one row of the horizontal pass's window. Returns the lanes that differ from the first one.
-FORCED_INLINE vint load_light_run(Sight* sight, const Windows* w, const struct FrameParams* f, const InputRows* rows,
-                                  const RgbRow* later, int x_begin, int x_end, int y, const int direct) {
-  const int in_down = y >= w->down.y_begin && y < w->down.y_end;
+FORCED_INLINE void fetch_later(const LaterRow* row, int x) {
+  fetch_rgb_ahead(&row->light, x);
+  fetch_ahead(row->surface, 1, x);
+}
+
+FORCED_INLINE vint differing(const Sight* sight, vrgb light) {
+  return (as_vint(light.r) ^ as_vint((vfloat)(sight->light[0]))) |
+         (as_vint(light.g) ^ as_vint((vfloat)(sight->light[1]))) |
+         (as_vint(light.b) ^ as_vint((vfloat)(sight->light[2])));
+}
+
+// Light of some pixels of one row of the horizontal pass's window, of any images, anywhere. Returns the lanes that
+// differ from the first one.
+SHARED vint load_light_run(Sight* sight, const Windows* w, const struct FrameParams* f, const InputRows* rows,
+                           int x_begin, int x_end, int y) {
   const int is_own = y >= w->own_y_begin && y < w->own_y_end;
   vint varied = (vint)(0);
   for (int x = x_begin; x < x_end; x += V) {
-    // What lies between is fetched bit by bit beside the horizontal pass.
-    if (x < w->x_begin || x >= w->x_end) fetch_rgb_ahead(later, x);
-    const LoadedLight loaded = load_light(&w->across, f, rows, x, y, direct);
-    if (in_down && x >= w->x_begin && x < w->x_end) {
-      store_bytes(w->down.material + pixel_at(&w->down, x, y), loaded.material);
-    }
+    const LoadedLight loaded = load_light(&w->across, f, rows, x, y);
     if (any_bit(loaded.bad)) {
       sight->last_bad = y;
       if (is_own && x >= w->own_x_begin && x < w->own_x_end) {
@@ -134,37 +149,63 @@ FORCED_INLINE vint load_light_run(Sight* sight, const Windows* w, const struct F
     }
     const vint there = AS_MASK(loaded.material != 0);
     if (!sight->has_first && any_bit(there)) find_first(sight, &loaded);
-    varied |= ((as_vint(loaded.light.r) ^ as_vint((vfloat)(sight->light[0]))) |
-               (as_vint(loaded.light.g) ^ as_vint((vfloat)(sight->light[1]))) |
-               (as_vint(loaded.light.b) ^ as_vint((vfloat)(sight->light[2])))) &
-              there;
+    varied |= differing(sight, loaded.light) & there;
   }
   return varied;
 }
 
-// The same of any images, anywhere.
-SHARED vint load_any_light_run(Sight* sight, const Windows* w, const struct FrameParams* f, const InputRows* rows,
-                               const RgbRow* later, int x_begin, int x_end, int y) {
-  return load_light_run(sight, w, f, rows, later, x_begin, x_end, y, 0);
+// The same of planes of floats in the frame, after the first light was found and if there is no albedo: without a
+// branch and without a call, before which registers would be saved. Returns whether some light is not finite: then it
+// is to be done again by the other.
+FORCED_INLINE int load_planar_run(const Sight* sight, const Windows* w, const InputRows* rows, int x_begin, int x_end,
+                                  int y, vint* varied) {
+  const Window across = w->across;
+  vint bad = (vint)(0);
+  for (int x = x_begin; x < x_end; x += V) {
+    const size_t at = pixel_at(&across, x, y);
+    const vint m = load_bytes(rows->surface + x);
+    const vrgb value = read_planar_rgb(&rows->light, x);
+    const vint there = AS_MASK(m != 0);
+    const vint good = is_finite(value);
+    const vrgb light = keep_rgb(there & good, value);
+    store_rgb(across.light, across.plane, at, light);
+    store_bytes(across.material + at, m & good);
+    bad |= there & ~good;
+    *varied |= differing(sight, light) & there;
+  }
+  return any_bit(bad);
 }
 
 // Light of one row of the horizontal pass's window.
 SHARED void load_light_row(Sight* sight, const Windows* w, const struct FrameParams* f, const Inputs* in,
                            Columns columns, int y) {
   const InputRows rows = input_rows(f, in, y);
-  const RgbRow later = later_light(w, f, in, y);
-  int direct_begin = columns.begin;
-  int direct_end = columns.begin;
+  int planar_begin = columns.begin;
+  int planar_end = columns.begin;
 #if V > 1 && !HAS_ALBEDO
-  if (rows.light.planar) {
-    direct_begin = max(columns.begin, 0);
-    direct_end = max(min(columns.end, f->width / V * V), direct_begin);
+  if (rows.light.planar && sight->has_first) {
+    planar_begin = max(columns.begin, 0);
+    planar_end = max(min(columns.end, f->width / V * V), planar_begin);
   }
 #endif
-  vint varied = load_any_light_run(sight, w, f, &rows, &later, columns.begin, direct_begin, y);
-  varied |= load_light_run(sight, w, f, &rows, &later, direct_begin, direct_end, y, 1);
-  varied |= load_any_light_run(sight, w, f, &rows, &later, direct_end, columns.end, y);
+  vint varied = load_light_run(sight, w, f, &rows, columns.begin, planar_begin, y);
+  vint varied_planar = (vint)(0);
+  if (load_planar_run(sight, w, &rows, planar_begin, planar_end, y, &varied_planar)) {
+    varied_planar = load_light_run(sight, w, f, &rows, planar_begin, planar_end, y);
+  }
+  varied |= varied_planar | load_light_run(sight, w, f, &rows, planar_end, columns.end, y);
   if (any_bit(varied)) sight->last_varied = y;
+
+  if (y >= w->down.y_begin && y < w->down.y_end) {
+    for (int x = max(columns.begin, w->x_begin); x < min(columns.end, w->x_end); x += V) {
+      store_bytes(w->down.material + pixel_at(&w->down, x, y),
+                  load_bytes(w->across.material + pixel_at(&w->across, x, y)));
+    }
+  }
+  // What lies between is fetched bit by bit beside the horizontal pass.
+  const LaterRow later = later_row(w, f, in, y);
+  for (int x = columns.begin; x < w->x_begin; x += V) fetch_later(&later, x);
+  for (int x = (w->x_end + V - 1) / V * V; x < columns.end; x += V) fetch_later(&later, x);
 }
 
 // Surface of one row of a window.
@@ -294,7 +335,7 @@ SHARED void copy_pixels(const struct FrameParams* f, const Inputs* in, const Out
 }
 
 // Flat cells of one row.
-SHARED void across_flat(const Windows* w, const Tables* tables, struct ChoiceParams choice, const RgbRow* later,
+SHARED void across_flat(const Windows* w, const Tables* tables, struct ChoiceParams choice, const LaterRow* later,
                         int x_begin, int x_end, int y) {
   const Window from = w->across;
   const Pass pass = pass_from(&from, 0);
@@ -305,7 +346,7 @@ SHARED void across_flat(const Windows* w, const Tables* tables, struct ChoicePar
   global const struct FlatWeight* weights = tables->flat_weights + choice.weight;
   const int pairs = rung->pairs;
   for (int x = x_begin; x < x_end; x += V) {
-    fetch_rgb_ahead(later, x);
+    fetch_later(later, x);
     vrgb result[TERMS];
     scatter_clean(result, &pass, offsets, pairs, weights, x, y);
     for (int t = 0; t < TERMS; ++t) store_rgb(to + 3 * t * plane, plane, x, result[t]);
@@ -314,7 +355,7 @@ SHARED void across_flat(const Windows* w, const Tables* tables, struct ChoicePar
 
 // Smooth cells of one row.
 SHARED void across_smooth(const Windows* w, const struct FrameParams* f, const Tables* tables,
-                          struct ChoiceParams choice, const RgbRow* later, int x_begin, int x_end, int y) {
+                          struct ChoiceParams choice, const LaterRow* later, int x_begin, int x_end, int y) {
   const Window from = w->across;
   const Pass pass = pass_from(&from, 0);
   const size_t plane = w->down.plane;
@@ -323,7 +364,7 @@ SHARED void across_smooth(const Windows* w, const struct FrameParams* f, const T
   global const int* offsets = tables->offsets + rung->first_offset;
   global const struct SmoothWeight* weights = tables->smooth_weights + choice.weight;
   for (int x = x_begin; x < x_end; x += V) {
-    fetch_rgb_ahead(later, x);
+    fetch_later(later, x);
     vrgb result[TERMS];
     scatter_smooth_clean(result, f, &pass, rung, offsets, weights, x, y);
     for (int t = 0; t < TERMS; ++t) store_rgb(to + 3 * t * plane, plane, x, result[t]);
@@ -332,14 +373,14 @@ SHARED void across_smooth(const Windows* w, const struct FrameParams* f, const T
 
 // Curved cells of one row.
 SHARED void across_curved(const Windows* w, const struct FrameParams* f, const Tables* tables,
-                          struct ChoiceParams choice, const RgbRow* later, int x_begin, int x_end, int y) {
+                          struct ChoiceParams choice, const LaterRow* later, int x_begin, int x_end, int y) {
   const Window from = w->across;
   const Pass pass = pass_from(&from, 0);
   const size_t plane = w->down.plane;
   global float* to = w->down.light + pixel_at(&w->down, 0, y);
   global const struct TermParams* terms = tables->terms + tables->materials[choice.material].first_term;
   for (int x = x_begin; x < x_end; x += V) {
-    fetch_rgb_ahead(later, x);
+    fetch_later(later, x);
     vrgb result[TERMS];
     scatter_curved(result, f, &pass, tables, tables->rungs + choice.rung, terms, (vint)(choice.material + 1), x, y, 1);
     for (int t = 0; t < TERMS; ++t) store_rgb(to + 3 * t * plane, plane, x, result[t]);
@@ -358,13 +399,13 @@ SHARED void across_empty(const Windows* w, int x_begin, int x_end, int y) {
 }
 
 // Any cells of one row.
-SHARED void across_any(const Windows* w, const struct FrameParams* f, const Tables* tables, const RgbRow* later,
+SHARED void across_any(const Windows* w, const struct FrameParams* f, const Tables* tables, const LaterRow* later,
                        int x_begin, int x_end, int y) {
   const Pass pass = pass_from(&w->across, 0);
   const size_t plane = w->down.plane;
   global float* to = w->down.light + pixel_at(&w->down, 0, y);
   for (int x = x_begin; x < x_end; x += V) {
-    fetch_rgb_ahead(later, x);
+    fetch_later(later, x);
     vrgb result[TERMS];
     scatter_pixels(result, f, &pass, tables, x, y);
     for (int t = 0; t < TERMS; ++t) store_rgb(to + 3 * t * plane, plane, x, result[t]);
@@ -372,11 +413,11 @@ SHARED void across_any(const Windows* w, const struct FrameParams* f, const Tabl
 }
 
 // Cells of one row of uniform light: a term is its sum times the light.
-SHARED void across_uniform(const Windows* w, const Tables* tables, const Sight* sight, const RgbRow* later, int x_begin,
-                           int x_end, int y) {
+SHARED void across_uniform(const Windows* w, const Tables* tables, const Sight* sight, const LaterRow* later,
+                           int x_begin, int x_end, int y) {
   const vrgb light = {(vfloat)(sight->light[0]), (vfloat)(sight->light[1]), (vfloat)(sight->light[2])};
   for (int x = x_begin; x < x_end; x += V) {
-    fetch_rgb_ahead(later, x);
+    fetch_later(later, x);
     const vint m = load_bytes(w->across.material + pixel_at(&w->across, x, y)) & MATERIAL_MASK;
     for (int t = 0; t < TERMS; ++t) {
       vrgb result = same_rgb((vfloat)(0.0f));
@@ -392,7 +433,7 @@ SHARED void across_uniform(const Windows* w, const Tables* tables, const Sight* 
 // The horizontal pass over one row.
 static inline void scatter_row(const Windows* w, const struct FrameParams* f, const Inputs* in, const Tables* tables,
                                const Sight* sight, int skips, int y) {
-  const RgbRow later = later_light(w, f, in, y);
+  const LaterRow later = later_row(w, f, in, y);
   const int cells = (w->x_end - w->x_begin + CELL - 1) / CELL;
   // Even if the light of this row is uniform: that of the next may not be.
   if (y % CELL == 0 || y == w->y_begin) {

@@ -1,7 +1,10 @@
 // dermis filter: a picture in, the same picture with scattered light out.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
+#include <bit>
+#include <cstddef>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -81,10 +84,20 @@ std::array<std::string, 3> scattered_channels(const exr::Roles& roles) {
 }
 
 /// None if the pixels are nowhere, or of a size that taps cannot be made for.
-std::optional<double> pixel_mm_of(const SurfacePixels& pixels, const Camera& camera, double mm_per_unit) {
-  if (!pixels.median_depth_units) return std::nullopt;
-  const double pixel_mm = finest_pixel_mm(camera, *pixels.median_depth_units, mm_per_unit);
+std::optional<double> pixel_mm_at(const std::optional<double>& depth_units, const Camera& camera, double mm_per_unit) {
+  if (!depth_units) return std::nullopt;
+  const double pixel_mm = finest_pixel_mm(camera, *depth_units, mm_per_unit);
   return pixel_mm >= 1e-12 && pixel_mm <= 1e12 ? std::optional(pixel_mm) : std::nullopt;
+}
+
+/// A width that no kernel of the profile goes beyond, of the few that there are taps for: most radii are twice that of
+/// 99.9 % at most.
+int widest_kernel_px(double radius_mm, const std::optional<double>& pixel_mm) {
+  constexpr unsigned least_px = 128;
+  constexpr unsigned most_px = TapsDesign{}.widest_px;
+  const double radius_px = pixel_mm ? 2 * radius_mm / *pixel_mm : most_px;
+  return static_cast<int>(radius_px < most_px ? std::max(std::bit_ceil(static_cast<unsigned>(radius_px)), least_px)
+                                              : most_px);
 }
 
 std::vector<MaterialReport> report_materials(const std::vector<NamedProfile>& profiles, const LoadedFrame& loaded,
@@ -100,11 +113,14 @@ std::vector<MaterialReport> report_materials(const std::vector<NamedProfile>& pr
     } else {
       fmt::print(stderr, "dermis: warning: --material {}: no pixel has this id\n", *named.id);
     }
+    const double radius_mm = kernel_radius_mm(named.profile);
+    const auto nearest_pixel_mm = pixel_mm_at(pixels.nearest_depth_units, camera, mm_per_unit);
     reports.push_back({.id = named.id,
                        .profile = without_folders(named.text),
-                       .radius_mm = kernel_radius_mm(named.profile),
+                       .radius_mm = radius_mm,
                        .pixels = pixels.pixels,
-                       .pixel_mm = pixel_mm_of(pixels, camera, mm_per_unit),
+                       .pixel_mm = pixel_mm_at(pixels.median_depth_units, camera, mm_per_unit),
+                       .widest_px = widest_kernel_px(radius_mm, nearest_pixel_mm),
                        .design = {},
                        .taps = {},
                        .predicted_rel_l2 = {}});
@@ -134,6 +150,14 @@ void follow_tolerance(const FilterArguments& arguments, std::vector<NamedProfile
   if (is_exact) report.options.method = Method::exact;
   fmt::print(stderr, "dermis: note:{}: no taps are that good for {}; {}\n", command_text(arguments.quality),
              fmt::join(without, ", "), is_exact ? "the method is exact" : "they have the best");
+}
+
+/// No taps are placed for kernels that are wider than any of the picture.
+void place_as_wide_as_needed(std::vector<NamedProfile>& profiles, const StatsReport& report) {
+  for (std::size_t i = 0; i < profiles.size(); ++i) {
+    if (!profiles[i].taps) profiles[i].taps = report.options.taps;
+    profiles[i].taps->widest_px = report.materials[i].widest_px;
+  }
 }
 
 /// Before the work that it needs.
@@ -259,6 +283,7 @@ void filter_picture(const FilterArguments& arguments, std::optional<FilterSessio
   if (!session) session.emplace(Device::open(arguments.device, arguments.threads), arguments.reuse);
   report.device = session->device().info();
   if (is_automatic(arguments)) follow_tolerance(arguments, profiles, report);
+  place_as_wide_as_needed(profiles, report);
   check_tiles(arguments, report);
   make_plan(*session, profiles, frame, report.options);
   report.times.plan_ms = step.lap_ms();

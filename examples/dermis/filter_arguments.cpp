@@ -136,7 +136,7 @@ std::vector<FilterArguments> one_by_one(const FilterArguments& arguments) {
       std::string& its_path = one.*path;
       if (its_path.empty() || its_path == "-") continue;
       const bool is_folder = std::filesystem::is_directory(its_path);
-      if (count == 1 && is_folder)
+      if (count == 1 && is_folder && std::filesystem::path(its_path).extension() != ending)
         throw Error(ErrorCode::usage, argument, its_path,
                     fmt::format("a file name that ends in {}, for one picture", ending));
       if (count == 1) continue;

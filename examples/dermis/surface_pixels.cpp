@@ -11,11 +11,12 @@ namespace {
 /// As dermis::Frame says.
 bool is_background(float depth) { return !(depth < 1e9F) || !std::isfinite(depth); }
 
-std::optional<double> median(std::vector<float>& values) {
-  if (values.empty()) return std::nullopt;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+void add_depths(SurfacePixels& surface, std::vector<float>& depths) {
+  if (depths.empty()) return;
+  const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
+  std::nth_element(depths.begin(), middle, depths.end());
+  surface.median_depth_units = *middle;
+  surface.nearest_depth_units = *std::min_element(depths.begin(), middle + 1);
 }
 
 }  // namespace
@@ -32,7 +33,7 @@ MaterialCounts count_materials(std::span<const float> ids, std::span<const float
     ++counts.by_id[id].pixels;
     if (i < depth.size() && !is_background(depth[i])) depths[id].push_back(depth[i]);
   }
-  for (auto& [id, values] : depths) counts.by_id[id].median_depth_units = median(values);
+  for (auto& [id, values] : depths) add_depths(counts.by_id[id], values);
   return counts;
 }
 
@@ -40,8 +41,8 @@ SurfacePixels count_surface(std::span<const float> depth, std::span<const float>
   std::vector<float> depths;
   for (std::size_t i = 0; i < depth.size(); ++i)
     if (!is_background(depth[i]) && (mask.empty() || mask[i] > 0)) depths.push_back(depth[i]);
-  SurfacePixels surface{static_cast<std::int64_t>(depths.size()), {}};
-  surface.median_depth_units = median(depths);
+  SurfacePixels surface{static_cast<std::int64_t>(depths.size()), {}, {}};
+  add_depths(surface, depths);
   return surface;
 }
 

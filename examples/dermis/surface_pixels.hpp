@@ -14,6 +14,7 @@ namespace dermis::program {
 struct SurfacePixels {
   std::int64_t pixels = 0;
   std::optional<double> median_depth_units;  ///< of those that are not background, if there are any
+  std::optional<double> nearest_depth_units;
 };
 
 struct MaterialCounts {

@@ -44,9 +44,11 @@ struct TapsDesign {
   double guide = 2;           ///< guided: k in 0..4, sharper to smoother
   /// An error to be content with, as TapSet::predicted_rel_l2, below 1: each width of kernel gets no more taps than
   /// that takes, of 5, 7, 11, 17, 25, 33, 49, 65 and `count`. Where no count will do, because the model itself is
-  /// further off, they are as many as bring the error to 5/4 of the model's; kernels of more than 512 px radius have
-  /// those of one half as wide, or a quarter, and so on. 0: all widths get `count`.
+  /// further off, they are as many as bring the error to 5/4 of the model's. 0: all widths get `count`.
   double tolerance = 0;
+  /// Kernels of a larger radius, px, have the taps of one half as wide, or a quarter, and so on, which are placed for
+  /// the finer kernel; unless `count` is as large. Each halving makes the ladder in less than half the time: 64..512.
+  int widest_px = 512;
 
   bool operator==(const TapsDesign&) const = default;
 };

@@ -36,6 +36,9 @@ void check_design(const TapsDesign& design) {
   if (design.count < 3 || design.count > most_taps || design.count % 2 == 0) {
     throw Error(ErrorCode::usage, "taps", std::to_string(design.count), "an odd number, 3..2047");
   }
+  if (design.widest_px < 64 || design.widest_px > 512) {
+    throw Error(ErrorCode::usage, "widest_px", std::to_string(design.widest_px), "64..512");
+  }
   if (!(design.guide >= 0 && design.guide <= 4)) {
     throw Error(ErrorCode::usage, "guide", std::to_string(design.guide), "0..4");
   }

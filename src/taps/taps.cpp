@@ -282,8 +282,7 @@ Taps make_taps(const Profile& profile, const TapsDesign& design) {
   for (int i = 0; i < Taps::octaves * rungs_per_octave; ++i) {
     const double radius_px = middle_radius_px(i);
     // Pixels are small against everything in wider kernels; the taps of one octave serve the next.
-    constexpr double widest_fitted_px = 512;
-    if (radius_px > widest_fitted_px && design.count < widest_fitted_px) {
+    if (radius_px > design.widest_px && design.count < design.widest_px) {
       taps.rungs.push_back(spread(taps.rungs[i - rungs_per_octave]));
       continue;
     }
