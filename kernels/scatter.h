@@ -413,8 +413,17 @@ FORCED_INLINE void scatter_curved(vrgb* result, const struct FrameParams* f, con
       add_straight(&sums, f, s, &target, weights, x, y, side * offsets[i], clean);
     }
   }
+  // Where more surface lies within reach than on a plane, a mean divides by it, and a difference must not grow with it.
+  const vrgb all = sums.weight[0];
+  const vrgb share = {1.0f / fmax(all.r, 1.0f), 1.0f / fmax(all.g, 1.0f), 1.0f / fmax(all.b, 1.0f)};
 #pragma unroll
-  for (int t = 0; t < TERMS; ++t) result[t] = finish_term(terms + t, sums.light[t], sums.weight[t], own[t]);
+  for (int t = 0; t < TERMS; ++t) {
+    if (t > 0 && !terms[t].normalised) {
+      sums.light[t] = product(share, sums.light[t]);
+      sums.weight[t] = product(share, sums.weight[t]);
+    }
+    result[t] = finish_term(terms + t, sums.light[t], sums.weight[t], own[t]);
+  }
 }
 
 static inline struct CellPass cell_pass(const struct FrameParams* f, const Tables* tables, int cell_x, int cell_y,

@@ -150,7 +150,7 @@ struct Rung {
 ///     w_0 = core_gain core(sqrt(core_half_width_px s_p / k))
 ///     w_i = length_mm_i rung.footprint s_i falloff(|P_p - P_i| / k) / k + share_i w_i(first term)
 ///     result = sum w_i x_i / sum w_i                      if t is normalised
-///            = sum_t x_p + sum w_i (x_i - x_p)            if not
+///            = sum_t x_p + g sum w_i (x_i - x_p)          if not, g = 1 / max(1, sum w_i(first term))
 ///
 /// where P are the surface points and s is the length of surface, mm, that a pixel spans along the pass: |dP/dx| or
 /// |dP/dy|, the change of depth in it being the smaller one of the differences to both neighbours of the same material,

@@ -160,10 +160,17 @@ Outcome Pass::with_taps(int x, int y, const Way& way) {
     if (static_cast<int>(i) < way.rotated) offset = turned.offset(rung.offsets_px[i]);
     for (const int side : {1, -1}) add_tap(x, y, offset, side, weights, i);
   }
+  std::array<Bounded, 3> limit{exact(1), exact(1), exact(1)};  // of differences, on a curved surface
+  if (way.shape == Shape::curved) {
+    for (int c = 0; c < 3; ++c) limit[c] = exact(1) / larger(sums_[0][c].weights(), exact(1));
+  }
   Outcome values;
   for (std::size_t t = 0; t < taps.terms.size(); ++t) {
     const Term& term = taps.terms[t];
     values.push_back(input(t, x, y));
+    if (!term.normalised) {
+      for (int c = 0; c < 3; ++c) sums_[t][c].scale(limit[c]);
+    }
     for (int c = 0; c < 3; ++c) {
       const Bounded own = values[t][c];
       values[t][c] = term.normalised ? sums_[t][c].mean(own) : sums_[t][c].about(own, term.sum[c]);

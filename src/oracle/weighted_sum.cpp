@@ -12,6 +12,22 @@ double error_of(Bounded weight) { return weight.error + smallest_normal; }
 
 }  // namespace
 
+Bounded WeightedSum::weights() const {
+  double sum = 0;
+  double error = 0;
+  double magnitudes = 0;
+  for (const Tap& tap : taps_) {
+    sum += tap.weight.value;
+    error += error_of(tap.weight);
+    magnitudes += tap.weight.magnitude();
+  }
+  return {sum, error + static_cast<double>(taps_.size()) * unit_roundoff * magnitudes};
+}
+
+void WeightedSum::scale(Bounded factor) {
+  for (Tap& tap : taps_) tap.weight = tap.weight * factor;
+}
+
 // In all that follows a term that goes through k roundings is off by at most k u / (1 - k u) of its magnitude, which
 // is below (k + 1) u for the k < 4096 there can be.
 

@@ -13,6 +13,12 @@ class WeightedSum {
   void clear() { taps_.clear(); }
   void add(Bounded weight, Bounded x) { taps_.push_back({weight, x}); }
 
+  /// The sum of the weights.
+  Bounded weights() const;
+
+  /// Multiplies all weights.
+  void scale(Bounded factor);
+
   /// sum w x / sum w; `if_weightless` if the weights sum to zero.
   Bounded mean(Bounded if_weightless) const;
 

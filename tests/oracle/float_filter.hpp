@@ -151,6 +151,7 @@ class FloatFilter {
         const float half_width = rung.core_half_width_px * pixel.segment[axis] / pixel.k[c];
         weights = rung.core_gain[t][c] * look_up(term.core, c, half_width * half_width);
       }
+      float first_weights = plane ? 0 : first_core(axis, pixel, rung, c);
       float sum = weights * own;
       const bool about_own = !term.normalised && style_.differences;
       for (std::size_t n = 0; n < rung.offsets_px.size(); ++n) {
@@ -174,8 +175,14 @@ class FloatFilter {
           }
           const float light = input[3 * q + c];
           weights += weight;
+          if (!plane) first_weights += t == 0 ? weight : weigh(axis, p, q, rung, i, 0, c);
           sum = multiply_add(weight, about_own ? light - own : light, sum);
         }
+      }
+      if (!term.normalised) {
+        const float limit = 1 / std::fmax(first_weights, 1.0F);
+        sum *= limit;
+        weights *= limit;
       }
       if (term.normalised) {
         output[c] = sum / weights;
@@ -183,6 +190,12 @@ class FloatFilter {
         output[c] = multiply_add(about_own ? term.sum[c] : term.sum[c] - weights, own, sum);
       }
     }
+  }
+
+  /// The weight of the pixel itself in the first term.
+  float first_core(int axis, const FloatPixel& pixel, const dermis::Rung& rung, std::size_t c) const {
+    const float half_width = rung.core_half_width_px * pixel.segment[axis] / pixel.k[c];
+    return rung.core_gain[0][c] * look_up(taps_of(pixel).terms[0].core, c, half_width * half_width);
   }
 
   struct FloatBend {
