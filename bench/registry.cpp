@@ -74,6 +74,9 @@ void add_flat(std::vector<Case>& cases) {
   for (const int rank : {1, 2, 3}) {
     cases.push_back({.group = Group::flat, .scene = flat_scene, .design = optimised(rank, 17)});
   }
+  for (const int count : {7, 25}) {
+    cases.push_back({.group = Group::flat, .scene = flat_scene, .design = optimised(1, count)});
+  }
   cases.push_back({.group = Group::flat, .scene = flat_scene, .design = optimised(2, 33)});
   for (const int kernel_px : kernels_px) {
     const SceneSpec scene = wide(flat_scene, kernel_px);

@@ -31,7 +31,7 @@ typedef long long Bytes;
 #define NARROW_BIT 0x80
 #define MAX_MATERIALS 127
 
-// Counters of a run, the last five of pixels.
+// Counters of a run, the last six of pixels, or of their channels that are left alone.
 #define COUNTER_NEXT_TILE 0
 #define COUNTER_WORKERS 1
 #define COUNTER_BAD 2
@@ -39,7 +39,8 @@ typedef long long Bytes;
 #define COUNTER_NARROW 4
 #define COUNTER_FLAT 5
 #define COUNTER_SMOOTH 6
-#define RUN_COUNTERS 7
+#define COUNTER_CHANNELS 7
+#define RUN_COUNTERS 8
 
 // What became of a tile.
 #define TILE_WITHOUT_MATERIAL 0
@@ -191,7 +192,9 @@ struct RungParams {
   float core_half_width_px;
   int first_offset;
   int pairs;
-  int rotated_pairs;  // the first ones
+  int channel_pairs[3];  // those in which a channel has a weight, the first ones; none if its spread is below half a
+                         // pixel
+  int rotated_pairs;     // the first ones
   int first_weight;
   int first_flat_weight;  // of the first part
   int first_smooth_weight;

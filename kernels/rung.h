@@ -21,3 +21,8 @@ static inline int last_offset_of(global const struct MaterialParams* its, global
   const int rung = step_of(its, footprint, shape).rung;
   return rung >= 0 ? rungs[its->first_rung + rung].last_offset_px : 0;
 }
+
+// Pairs in which all channels have a weight.
+static inline int full_pairs_of(global const struct RungParams* rung) {
+  return min(min(rung->channel_pairs[0], rung->channel_pairs[1]), rung->channel_pairs[2]);
+}

@@ -67,16 +67,57 @@ FORCED_INLINE int in_frame(const struct FrameParams* f, const Pass* s, int x, in
   return tap_x > -V && tap_x < f->width && tap_y >= 0 && tap_y < f->height;
 }
 
+FORCED_INLINE vrgb add_scaled(global const float* factor, vrgb a, vrgb b) {
+  const vrgb result = {fma((vfloat)(factor[0]), a.r, b.r), fma((vfloat)(factor[1]), a.g, b.g),
+                       fma((vfloat)(factor[2]), a.b, b.b)};
+  return result;
+}
+
+// A pair of taps in one channel.
+typedef struct {
+  vfloat after, before;
+} ChannelPair;
+
+FORCED_INLINE ChannelPair load_channel_pair(const Pass* s, int t, int channel, size_t after, size_t before) {
+  global const float* plane = s->from->light + t * s->next_light + channel * s->from->plane;
+  const ChannelPair pair = {load_floats(plane + after), load_floats(plane + before)};
+  return pair;
+}
+
+// Pairs from `i` on, in which only some channels have weights.
+SHARED void add_last_pairs(vrgb* sums, const Pass* s, global const struct RungParams* rung, global const int* offsets,
+                           global const struct FlatWeight* weights, int i, int x, int y) {
+#pragma nounroll
+  for (; i < rung->pairs; ++i) {
+    const size_t after = tap_at(s, x, y, offsets[i]);
+    const size_t before = tap_at(s, x, y, -offsets[i]);
+    weights += TERMS;
+#define ADD_CHANNEL(name, channel)                                                                   \
+  if (i < rung->channel_pairs[channel]) {                                                            \
+    for (int t = 0; t < TERMS; ++t) {                                                                \
+      const ChannelPair pair = load_channel_pair(s, t, channel, after, before);                      \
+      sums[t].name = fma((vfloat)(weights[t].rgb[channel]), pair.after + pair.before, sums[t].name); \
+    }                                                                                                \
+  }
+    ADD_CHANNEL(r, 0)
+    ADD_CHANNEL(g, 1)
+    ADD_CHANNEL(b, 2)
+#undef ADD_CHANNEL
+  }
+}
+
 // A flat cell where every tap falls on the material.
-FORCED_INLINE void scatter_clean(vrgb* result, const Pass* s, global const int* offsets, int pairs,
-                                 global const struct FlatWeight* weights, int x, int y) {
+FORCED_INLINE void scatter_clean(vrgb* result, const Pass* s, global const struct RungParams* rung,
+                                 global const int* offsets, global const struct FlatWeight* weights, int x, int y) {
   const size_t at = pixel_at(s->from, x, y);
 #pragma unroll
   for (int t = 0; t < TERMS; ++t) {
     result[t] = scaled(weights[t].rgb, load_term(s, t, at));
   }
+  const int full_pairs = full_pairs_of(rung);
+  int i = 0;
 #pragma nounroll
-  for (int i = 0; i < pairs; ++i) {
+  for (; i < full_pairs; ++i) {
     const size_t after = tap_at(s, x, y, offsets[i]);
     const size_t before = tap_at(s, x, y, -offsets[i]);
     weights += TERMS;
@@ -86,10 +127,14 @@ FORCED_INLINE void scatter_clean(vrgb* result, const Pass* s, global const int* 
       if (t == 0 || s->axis == 1) {
         pair = sum_rgb(load_term(s, t, after), load_term(s, t, before));
       }
-      result[t].r = fma(weights[t].rgb[0], pair.r, result[t].r);
-      result[t].g = fma(weights[t].rgb[1], pair.g, result[t].g);
-      result[t].b = fma(weights[t].rgb[2], pair.b, result[t].b);
+      result[t] = add_scaled(weights[t].rgb, pair, result[t]);
     }
+  }
+  if (i < rung->pairs) {
+    vrgb rest[TERMS];
+    for (int t = 0; t < TERMS; ++t) rest[t] = result[t];
+    add_last_pairs(rest, s, rung, offsets, weights, i, x, y);
+    for (int t = 0; t < TERMS; ++t) result[t] = rest[t];
   }
 }
 
@@ -159,12 +204,6 @@ FORCED_INLINE vrgb smooth_total(const SmoothSums* sums, Bend bend) {
   return fused(same_rgb(bend.skew), sums->skew, fused(same_rgb(bend.stretch), sums->stretch, sums->rgb));
 }
 
-FORCED_INLINE vrgb add_scaled(global const float* factor, vrgb a, vrgb b) {
-  const vrgb result = {fma((vfloat)(factor[0]), a.r, b.r), fma((vfloat)(factor[1]), a.g, b.g),
-                       fma((vfloat)(factor[2]), a.b, b.b)};
-  return result;
-}
-
 FORCED_INLINE vrgb difference_rgb(vrgb a, vrgb b) {
   const vrgb result = {a.r - b.r, a.g - b.g, a.b - b.b};
   return result;
@@ -181,6 +220,32 @@ FORCED_INLINE SmoothSums smooth_centre(global const struct SmoothWeight* weight,
   return sums;
 }
 
+// As add_last_pairs.
+SHARED void add_last_smooth_pairs(SmoothSums* sums, const Pass* s, global const struct RungParams* rung,
+                                  global const int* offsets, global const struct SmoothWeight* weights, int i, int x,
+                                  int y) {
+#pragma nounroll
+  for (; i < rung->pairs; ++i) {
+    const size_t after = tap_at(s, x, y, offsets[i]);
+    const size_t before = tap_at(s, x, y, -offsets[i]);
+    weights += TERMS;
+#define ADD_CHANNEL(name, channel)                                                                              \
+  if (i < rung->channel_pairs[channel]) {                                                                       \
+    for (int t = 0; t < TERMS; ++t) {                                                                           \
+      const ChannelPair pair = load_channel_pair(s, t, channel, after, before);                                 \
+      const vfloat both = pair.after + pair.before;                                                             \
+      sums[t].rgb.name = fma((vfloat)(weights[t].rgb[channel]), both, sums[t].rgb.name);                        \
+      sums[t].stretch.name = fma((vfloat)(weights[t].stretch[channel]), both, sums[t].stretch.name);            \
+      sums[t].skew.name = fma((vfloat)(weights[t].skew[channel]), pair.after - pair.before, sums[t].skew.name); \
+    }                                                                                                           \
+  }
+    ADD_CHANNEL(r, 0)
+    ADD_CHANNEL(g, 1)
+    ADD_CHANNEL(b, 2)
+#undef ADD_CHANNEL
+  }
+}
+
 // A smooth cell where every tap falls on the material.
 FORCED_INLINE void scatter_smooth_clean(vrgb* result, const struct FrameParams* f, const Pass* s,
                                         global const struct RungParams* rung, global const int* offsets,
@@ -190,8 +255,10 @@ FORCED_INLINE void scatter_smooth_clean(vrgb* result, const struct FrameParams* 
   SmoothSums sums[TERMS];
 #pragma unroll
   for (int t = 0; t < TERMS; ++t) sums[t] = smooth_centre(weights + t, load_term(s, t, at));
+  const int full_pairs = full_pairs_of(rung);
+  int i = 0;
 #pragma nounroll
-  for (int i = 0; i < rung->pairs; ++i) {
+  for (; i < full_pairs; ++i) {
     const size_t after = tap_at(s, x, y, offsets[i]);
     const size_t before = tap_at(s, x, y, -offsets[i]);
     weights += TERMS;
@@ -206,6 +273,12 @@ FORCED_INLINE void scatter_smooth_clean(vrgb* result, const struct FrameParams* 
       }
       add_smooth(sums + t, weights + t, both, change);
     }
+  }
+  if (i < rung->pairs) {
+    SmoothSums rest[TERMS];
+    for (int t = 0; t < TERMS; ++t) rest[t] = sums[t];
+    add_last_smooth_pairs(rest, s, rung, offsets, weights, i, x, y);
+    for (int t = 0; t < TERMS; ++t) sums[t] = rest[t];
   }
 #pragma unroll
   for (int t = 0; t < TERMS; ++t) result[t] = smooth_total(sums + t, bend);

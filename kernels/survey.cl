@@ -451,6 +451,18 @@ static inline struct CellPass pass_over(const struct FrameParams* f, global cons
   return pass;
 }
 
+// Channels of a cell that no tap is read for.
+static inline int channels_left_alone(global const struct MaterialParams* materials,
+                                      global const struct RungParams* rungs, global const struct CellParams* cell,
+                                      struct CellPass pass) {
+  if (pass.footprint == 0.0f || cell->material == 0) return 0;
+  global const struct MaterialParams* its = materials + cell->material - 1;
+  const int rung = step_of(its, pass.footprint, pass.shape).rung;
+  if (rung < 0) return 3;
+  global const int* pairs = rungs[its->first_rung + rung].channel_pairs;
+  return (pairs[0] == 0) + (pairs[1] == 0) + (pairs[2] == 0);
+}
+
 kernel void choose_passes(struct FrameParams f, int cells_per_item, global const struct MaterialParams* materials,
                           global const struct RungParams* rungs, global const struct CellParams* cells,
                           global struct CellPasses* passes, global volatile int* counters) {
@@ -460,12 +472,15 @@ kernel void choose_passes(struct FrameParams f, int cells_per_item, global const
   int narrow = 0;
   int flat = 0;
   int smooth = 0;
+  int channels = 0;
   for (int cell_x = first; cell_x < min(first + cells_per_item, f.cells_x); ++cell_x) {
     const int cell = cell_y * f.cells_x + cell_x;
     passes[cell].x = pass_over(&f, materials, rungs, cells, cell_x, cell_y, 0);
     passes[cell].y = pass_over(&f, materials, rungs, cells, cell_x, cell_y, 1);
     scattered += cells[cell].scattered;
     narrow += cells[cell].narrow;
+    channels += cells[cell].scattered * min(channels_left_alone(materials, rungs, cells + cell, passes[cell].x),
+                                            channels_left_alone(materials, rungs, cells + cell, passes[cell].y));
     const int shape = max(passes[cell].x.shape, passes[cell].y.shape);
     if (shape == SHAPE_FLAT) flat += cells[cell].scattered;
     if (shape == SHAPE_SMOOTH) smooth += cells[cell].scattered;
@@ -474,4 +489,5 @@ kernel void choose_passes(struct FrameParams f, int cells_per_item, global const
   atomic_add(counters + COUNTER_NARROW, narrow);
   atomic_add(counters + COUNTER_FLAT, flat);
   atomic_add(counters + COUNTER_SMOOTH, smooth);
+  atomic_add(counters + COUNTER_CHANNELS, channels);
 }

@@ -344,11 +344,10 @@ SHARED void across_flat(const Windows* w, const Tables* tables, struct ChoicePar
   global const struct RungParams* rung = tables->rungs + choice.rung;
   global const int* offsets = tables->offsets + rung->first_offset;
   global const struct FlatWeight* weights = tables->flat_weights + choice.weight;
-  const int pairs = rung->pairs;
   for (int x = x_begin; x < x_end; x += V) {
     fetch_later(later, x);
     vrgb result[TERMS];
-    scatter_clean(result, &pass, offsets, pairs, weights, x, y);
+    scatter_clean(result, &pass, rung, offsets, weights, x, y);
     for (int t = 0; t < TERMS; ++t) store_rgb(to + 3 * t * plane, plane, x, result[t]);
   }
 }
@@ -471,12 +470,11 @@ SHARED void down_flat(const Windows* w, const Tables* tables, struct ChoiceParam
   global const struct RungParams* rung = tables->rungs + choice.rung;
   global const int* offsets = tables->offsets + rung->first_offset;
   global const struct FlatWeight* weights = tables->flat_weights + choice.weight;
-  const int pairs = rung->pairs;
   global const struct TermParams* terms = tables->terms + tables->materials[choice.material].first_term;
   for (int y = y_begin; y < y_end; ++y) {
     for (int x = x_begin; x < x_end; x += V) {
       vrgb result[TERMS];
-      scatter_clean(result, &pass, offsets, pairs, weights, x, y);
+      scatter_clean(result, &pass, rung, offsets, weights, x, y);
       store_planes(&target, y * target.row_stride + x, total_of(terms, result));
     }
   }

@@ -130,6 +130,8 @@ std::string text_of(const StatsReport& report) {
   text += counted("flat", stats.pixels_flat, stats.pixels);
   text += counted("smooth", stats.pixels_smooth, stats.pixels);
   text += counted("bad", stats.pixels_bad, stats.pixels);
+  text += fmt::format("channels    {}\n", 3 * stats.pixels_scattered);
+  text += counted("narrow", stats.channels_narrow, 3 * stats.pixels_scattered);
   return text + text_of_steps(report);
 }
 
@@ -158,6 +160,7 @@ std::string json_text_of(const StatsReport& report) {
                       {"narrow", stats.pixels_narrow},
                       {"flat", stats.pixels_flat},
                       {"smooth", stats.pixels_smooth},
+                      {"narrow_channels", stats.channels_narrow},
                       {"bad", stats.pixels_bad}};
   for (const MaterialReport& material : report.materials) object["materials"].push_back(json_of(material));
   return json_text(object);

@@ -117,10 +117,11 @@ struct Stats {
   std::int64_t pixels = 0;
   std::int64_t pixels_scattered = 0;  ///< those that are bad included
   std::int64_t pixels_without_material = 0;
-  std::int64_t pixels_narrow = 0;  ///< the kernel is narrower than half a pixel
-  std::int64_t pixels_flat = 0;    ///< of those scattered, on cells that need no depth terms in either pass
-  std::int64_t pixels_smooth = 0;  ///< of the others, on cells that need not the depth of taps in either pass
-  std::int64_t pixels_bad = 0;     ///< light or albedo not finite; counted where tiles are filtered
+  std::int64_t pixels_narrow = 0;    ///< the kernel is narrower than half a pixel
+  std::int64_t pixels_flat = 0;      ///< of those scattered, on cells that need no depth terms in either pass
+  std::int64_t pixels_smooth = 0;    ///< of the others, on cells that need not the depth of taps in either pass
+  std::int64_t channels_narrow = 0;  ///< of pixels scattered whose cell shows one material: spread below half a pixel
+  std::int64_t pixels_bad = 0;       ///< light or albedo not finite; counted where tiles are filtered
 
   /// Tiles of one kind.
   std::int64_t count(TileKind kind) const { return std::count(tiles.kinds.begin(), tiles.kinds.end(), kind); }

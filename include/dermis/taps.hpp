@@ -203,7 +203,8 @@ struct Taps {
   static constexpr float most_stretch = 0.75F;
   static constexpr float most_skew = 0.5F;
 
-  /// Kernel radii of the first and the last rung, px: narrower kernels are left alone, wider ones use the last rung.
+  /// Kernel radii of the first and the last rung, px: narrower kernels are left alone, wider ones use the last rung. A
+  /// channel whose own radius on a rung is below the first has no weights there but its centre's.
   static constexpr float min_radius_px = 0.5F;
   static constexpr int log2_rungs_per_octave = 4;
   static constexpr int octaves = 15;

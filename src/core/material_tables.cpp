@@ -1,6 +1,7 @@
 #include "core/material_tables.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -56,6 +57,19 @@ void append_smooth_weights(const Rung& rung, std::size_t terms, std::size_t term
   }
 }
 
+/// How many pairs of a rung have a weight in a channel, from the first on.
+std::array<int, 3> channel_pairs(const Rung& rung, std::size_t terms) {
+  std::array<int, 3> pairs{};
+  for (std::size_t at = terms; at < rung.stretch_weights.size(); ++at) {
+    for (int c = 0; c < 3; ++c) {
+      bool has_weight = rung.stretch_weights[at][c] != 0 || rung.skew_weights[at - terms][c] != 0;
+      for (const auto& weights : rung.flat_weights) has_weight = has_weight || weights[at][c] != 0;
+      if (has_weight) pairs[c] = static_cast<int>(at / terms);
+    }
+  }
+  return pairs;
+}
+
 void append_rung(const Rung& rung, const Taps& taps, double jitter, std::size_t terms_per_material,
                  MaterialTables& tables) {
   const double rotated_px = jitter * rung.footprint * taps.radius_mm;
@@ -64,10 +78,17 @@ void append_rung(const Rung& rung, const Taps& taps, double jitter, std::size_t 
                                   : 0;
   const int last_px = rung.offsets_px.empty() ? 0 : rung.offsets_px.back();
   tables.farthest_px = std::max(tables.farthest_px, last_px);
-  tables.rungs.push_back({rung.footprint, rung.core_half_width_px, static_cast<int>(tables.offsets_px.size()),
-                          static_cast<int>(rung.offsets_px.size()), static_cast<int>(rotated),
-                          static_cast<int>(tables.weights.size()), static_cast<int>(tables.flat_weights.size()),
-                          static_cast<int>(tables.smooth_weights.size()), last_px});
+  const auto [red_pairs, green_pairs, blue_pairs] = channel_pairs(rung, taps.terms.size());
+  tables.rungs.push_back({rung.footprint,
+                          rung.core_half_width_px,
+                          static_cast<int>(tables.offsets_px.size()),
+                          static_cast<int>(rung.offsets_px.size()),
+                          {red_pairs, green_pairs, blue_pairs},
+                          static_cast<int>(rotated),
+                          static_cast<int>(tables.weights.size()),
+                          static_cast<int>(tables.flat_weights.size()),
+                          static_cast<int>(tables.smooth_weights.size()),
+                          last_px});
   tables.offsets_px.insert(tables.offsets_px.end(), rung.offsets_px.begin(), rung.offsets_px.end());
   const std::size_t terms = taps.terms.size();
   for (std::size_t row = 0; row <= rung.offsets_px.size(); ++row) {

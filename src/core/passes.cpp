@@ -295,6 +295,7 @@ void Passes::add_to(Stats& stats) const {
   stats.pixels_without_material = stats.pixels - stats.pixels_scattered - stats.pixels_narrow;
   stats.pixels_flat = counted[COUNTER_FLAT];
   stats.pixels_smooth = counted[COUNTER_SMOOTH];
+  stats.channels_narrow = counted[COUNTER_CHANNELS];
   stats.pixels_bad = counted[COUNTER_BAD];
   if (!plan_.tiled) return;
   TileMap& tiles = stats.tiles;

@@ -251,6 +251,17 @@ Rung make_rung(const SizedTaps& taps, const std::vector<Term>& terms, double foo
   return rung;
 }
 
+/// Leaves a channel alone whose own kernel is narrower than half a pixel.
+void leave_out(Rung& rung, const std::vector<Term>& terms, int c) {
+  for (TapWeight& weight : rung.weights) weight.length_mm[c] = weight.share[c] = 0;
+  for (std::size_t at = 0; at < rung.stretch_weights.size(); ++at) {
+    const bool is_centre = at < terms.size();
+    for (auto& weights : rung.flat_weights) weights[at][c] = is_centre ? terms[at].sum[c] : 0;
+    rung.stretch_weights[at][c] = 0;
+    if (!is_centre) rung.skew_weights[at - terms.size()][c] = 0;
+  }
+}
+
 /// The same taps for pixels half the size.
 Rung spread(Rung rung) {
   rung.footprint *= 2;
@@ -288,6 +299,11 @@ Taps make_taps(const Profile& profile, const TapsDesign& design) {
     }
     const double width_px = std::ldexp(Taps::min_radius_px, i / rungs_per_octave) / rungs_per_octave;
     taps.rungs.push_back(make_rung(budget.at(i), taps.terms, radius_px / taps.radius_mm, width_px / radius_px));
+    for (int c = 0; c < 3; ++c) {
+      if (radius_px * static_cast<double>(taps.relative_width[c]) < Taps::min_radius_px) {
+        leave_out(taps.rungs.back(), taps.terms, c);
+      }
+    }
   }
   return taps;
 }

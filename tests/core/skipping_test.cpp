@@ -162,3 +162,40 @@ TEST_CASE("progress goes to 1 and can stop a run", "[skipping]") {
   CHECK(calls == 3);
   CHECK(std::all_of(scattered.begin(), scattered.end(), [](float value) { return value == -1; }));
 }
+
+TEST_CASE("a channel that spreads less than half a pixel keeps its bits, and is counted", "[skipping]") {
+  const Device device = Device::open();
+  const dermis::TapsDesign design{.rank = 2, .count = 11};
+  const dermis::Profile& skin = dermis::preset("skin").profile;
+  const dermis::Taps taps = dermis::make_taps(skin, design);
+  constexpr int width = 80;  // whole cells
+  constexpr int height = 41;
+  // Blue spreads 0.4 px, the others further.
+  const double px_per_mm = 0.4 / (taps.radius_mm * static_cast<double>(taps.relative_width[2]));
+  REQUIRE(taps.relative_width[1] > 1.3F * taps.relative_width[2]);
+  Random random(820);
+  std::vector<float> light, scattered(static_cast<std::size_t>(width) * height * 3);
+  for (std::size_t i = 0; i < scattered.size(); ++i) light.push_back(static_cast<float>(random.uniform(0, 1)));
+  std::vector<float> depth;
+  for (int i = 0; i < width * height; ++i) depth.push_back(0.002F * static_cast<float>((i % width) * (i % width)));
+  for (const bool has_depth : {false, true}) {
+    Frame frame{.width = width,
+                .height = height,
+                .light = {.host = light.data()},
+                .depth = {.host = has_depth ? depth.data() : nullptr},
+                .camera = Camera::orthographic(px_per_mm, px_per_mm)};
+    frame.scattered.host = scattered.data();
+    const Stats stats = Plan(device, {{0, skin}}, FrameDescription::of(frame), {.taps = design}).run(frame);
+    CHECK(stats.channels_narrow == width * height);
+    CHECK(stats.pixels_flat + stats.pixels_smooth > 0);
+    long changed = 0;
+    for (std::size_t i = 0; i < light.size(); ++i) {
+      if (i % 3 == 2) {
+        REQUIRE(scattered[i] == light[i]);
+      } else {
+        changed += scattered[i] != light[i] ? 1 : 0;
+      }
+    }
+    CHECK(changed > width * height);
+  }
+}
