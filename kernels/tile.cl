@@ -722,11 +722,11 @@ static inline Sight scatter_rows(const Windows* w, const struct FrameParams* f, 
   return sight;
 }
 
-// Of a power of two of at least so many rows.
-static inline int rows_mask(int rows) {
+// Of a ring of at least so many rows: of a power of two, unless the frame has fewer and each row its own place.
+static inline int rows_mask(int rows, int frame_rows) {
   int power = 1;
   while (power < rows) power *= 2;
-  return power - 1;
+  return power <= frame_rows ? power - 1 : INT_MAX;
 }
 
 // The windows of a tile.
@@ -767,7 +767,7 @@ static inline Windows windows_of(const struct FrameParams* f, const Tables* tabl
   p.x_end = (min(w.x_end + max(reach_x, margin_px), f->width) + CELL - 1) & ~(CELL - 1);
   p.y_begin = max(w.y_begin - margin_px, 0);
   p.y_end = min(w.y_end + margin_px, f->height);
-  p.row_mask = rows_mask(p.y_end - p.y_begin);
+  p.row_mask = rows_mask(p.y_end - p.y_begin, f->height);
   p.row_stride = JITTER ? p.x_end - p.x_begin + 2 * PADDING : 0;
   w.across = window_in(p, across_plane, 1, memory);
   p.x_begin = w.x_begin;
@@ -775,7 +775,7 @@ static inline Windows windows_of(const struct FrameParams* f, const Tables* tabl
   // A row more, which slopes are taken from.
   p.y_begin = max(w.y_begin - 1, 0);
   p.y_end = min(w.y_end + 1, f->height);
-  p.row_mask = rows_mask(JITTER ? p.y_end - p.y_begin : min(p.y_end - p.y_begin, 2 * reach_y + BAND + 3));
+  p.row_mask = rows_mask(JITTER ? p.y_end - p.y_begin : min(p.y_end - p.y_begin, 2 * reach_y + BAND + 3), f->height);
   // Odd in cache lines, so that the pixels of a column do not share sets of the cache.
   p.row_stride = (p.x_end - p.x_begin + 2 * PADDING) | 16;
   w.down = window_in(p, down_plane, TERMS, memory + window_bytes(across_plane, 1));

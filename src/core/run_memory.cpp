@@ -46,8 +46,11 @@ std::size_t RunSizes::down_plane() const {
       std::min<std::size_t>(stride(), round_up(tile_width, CELL) + 2 * turned + 2 * PADDING) + CELL;
   // Without turned taps a row is not needed any more when the vertical pass is beyond it.
   constexpr std::size_t band_rows = BAND + 3;
-  const std::size_t rows = std::min<std::size_t>(height, turns_taps ? tile_height + 2 * reach : 2 * reach + band_rows);
-  return static_cast<std::size_t>(round_up(static_cast<int>(columns), alignment)) * std::bit_ceil(rows);
+  const std::size_t needed =
+      std::min<std::size_t>(height, turns_taps ? tile_height + 2 * reach : 2 * reach + band_rows);
+  // rows_mask of tile.cl
+  const std::size_t rows = std::min<std::size_t>(height, std::bit_ceil(needed));
+  return static_cast<std::size_t>(round_up(static_cast<int>(columns), alignment)) * rows;
 }
 
 std::size_t RunSizes::windows_bytes() const {
