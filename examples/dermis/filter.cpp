@@ -90,8 +90,8 @@ std::optional<double> pixel_mm_at(const std::optional<double>& depth_units, cons
   return pixel_mm >= 1e-12 && pixel_mm <= 1e12 ? std::optional(pixel_mm) : std::nullopt;
 }
 
-/// A width that no kernel of the profile goes beyond, of the few that there are taps for: most radii are twice that of
-/// 99.9 % at most.
+/// The widest kernel to place taps for, of few sizes: twice the radius of 99.9 %, for those of ranks 2 and 3 hold more.
+/// A kernel that is wider all the same has the taps of one half as wide.
 int widest_kernel_px(double radius_mm, const std::optional<double>& pixel_mm) {
   constexpr unsigned least_px = 128;
   constexpr unsigned most_px = TapsDesign{}.widest_px;
