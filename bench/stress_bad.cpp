@@ -204,7 +204,7 @@ StressRow no_depth(const StressFilter& deep, const StressField& field, std::mt19
 
 /// A pixel whose only neighbour of its material is far behind it passes for a piece of surface as long as that gap. The
 /// mean is divided by the weights, and the corrections of rank 2 by as much. What they give and take is still several
-/// times what they do on a plane (11 in 18 seeds): the bound tells it from what grows with the gap, 1e3 and more.
+/// times what they do on a plane (11 in 18 seeds): the bound tells it from what grows with the gap, 800 and more.
 constexpr StressPromise long_segments{.overshoot = 100, .white_within_bound = true};
 
 /// Red light on one half of a checkerboard, blue on the other, so far apart that the profile does not reach.

@@ -6,16 +6,12 @@
 
 #include "taps/check_design.hpp"
 #include "taps/designed_taps.hpp"
+#include "taps/quanta.hpp"
 #include "taps/tap_budget.hpp"
 
 namespace dermis {
 
 namespace {
-
-/// Weights are whole multiples of this, so that float32 adds them without rounding.
-constexpr double quantum = 0x1p-24;
-
-double rounded(double value) { return std::round(value / quantum) * quantum; }
 
 /// The whole row of one term and channel, from one side of it. `sum` is what the row adds up to.
 std::vector<double> quantised_row(const Eigen::VectorXd& side, double sum, double scale) {
@@ -23,10 +19,10 @@ std::vector<double> quantised_row(const Eigen::VectorXd& side, double sum, doubl
   std::vector<double> row(2 * pairs + 1);
   double outside = 0;
   for (int i = 1; i <= pairs; ++i) {
-    row[pairs + i] = row[pairs - i] = rounded(side[i] * scale);
+    row[pairs + i] = row[pairs - i] = in_quanta(side[i] * scale);
     outside += 2 * row[pairs + i];
   }
-  row[pairs] = rounded(sum * scale) - outside;
+  row[pairs] = in_quanta(sum * scale) - outside;
   return row;
 }
 

@@ -1,0 +1,161 @@
+// Curved cells: weights by the true distance of surface points. See Taps in taps.hpp.
+#include "octaves.h"
+#include "pass.h"
+#include "rotation.h"
+#include "tangent.h"
+
+// What every tap of the lanes of one material needs on a curved surface.
+typedef struct {
+  Points points;
+  vint material;    // 1 + its index, the same in all lanes
+  vrgb reciprocal;  // of the width factor
+  float footprint;  // of the rung
+  global const struct TermParams* terms;
+} Target;
+
+// Adds taps to the sums: squared distance, length of surface and light are theirs.
+FORCED_INLINE void add_taps(Sums* sums, const Target* target, global const struct WeightParams* its, vfloat r_squared,
+                            vfloat segment, const vrgb* light) {
+  const vfloat stretch = target->footprint * segment;
+  const vrgb length = times(target->reciprocal, stretch);
+  const vrgb distance = times(product(target->reciprocal, target->reciprocal), r_squared);  // squared, over k^2
+  vrgb first;
+#pragma unroll
+  for (int t = 0; t < TERMS; ++t) {
+    const vrgb falloff = look_up(&target->terms[t].falloff, distance);
+    vrgb weight = product(scaled(its[t].length_mm, falloff), length);
+    if (t == 0) {
+      first = weight;
+    } else {
+      weight.r = fma(its[t].share[0], first.r, weight.r);
+      weight.g = fma(its[t].share[1], first.g, weight.g);
+      weight.b = fma(its[t].share[2], first.b, weight.b);
+    }
+    sums->light[t] = fused(weight, light[t], sums->light[t]);
+    sums->weight[t] = sum_rgb(sums->weight[t], weight);
+  }
+}
+
+// Adds the pixels an offset away along the pass. `clean`: they are of the material.
+FORCED_INLINE void add_straight(Sums* sums, const struct FrameParams* f, const Pass* s, const Target* target,
+                                global const struct WeightParams* its, int x, int y, int offset, const int clean) {
+  if (!clean && !in_frame(f, s, x, y, offset)) return;
+  const size_t tap = tap_at(s, x, y, offset);
+  vfloat segment = load_floats(s->from->segment + tap);
+  if (!clean) {
+    // Elsewhere there is no surface to weigh, and the light is finite.
+    segment = keep(AS_MASK((load_bytes(s->from->material + tap) & MATERIAL_MASK) == target->material), segment);
+  }
+  const vfloat r_squared =
+      squared_distance_along(f, &target->points, load_floats(s->from->depth + tap), (float)offset, s->axis);
+  vrgb light[TERMS];
+#pragma unroll
+  for (int t = 0; t < TERMS; ++t) light[t] = load_term(s, t, tap);
+  add_taps(sums, target, its, r_squared, segment, light);
+}
+
+#if JITTER
+// Adds the pixels (dx, dy) away, different for each lane.
+FORCED_INLINE void add_rotated(Sums* sums, const struct FrameParams* f, const Pass* s, const Target* target,
+                               global const struct WeightParams* its, int x, int y, vint dx, vint dy) {
+  const vint qx = x + int_lane_numbers() + dx;
+  const vint qy = y + dy;
+  vfloat z, segment, fx, fy;
+  vint m;
+  vrgb light[TERMS];
+#define READ_LANE(lane)                                                                                                \
+  {                                                                                                                    \
+    const int inside = LANE(qx, lane) >= max(s->from->x_begin, 0) && LANE(qx, lane) < min(s->from->x_end, f->width) && \
+                       LANE(qy, lane) >= s->from->y_begin && LANE(qy, lane) < s->from->y_end;                          \
+    const size_t at = pixel_at(s->from, inside ? LANE(qx, lane) : x, inside ? LANE(qy, lane) : y);                     \
+    LANE(z, lane) = s->from->depth[at];                                                                                \
+    LANE(segment, lane) = s->from->segment[at];                                                                        \
+    LANE(m, lane) = inside ? s->from->material[at] : 0;                                                                \
+    LANE(fx, lane) = (float)LANE(dx, lane);                                                                            \
+    LANE(fy, lane) = (float)LANE(dy, lane);                                                                            \
+    for (int t = 0; t < TERMS; ++t) {                                                                                  \
+      global const float* its_light = s->from->light + t * s->next_light + at;                                         \
+      LANE(light[t].r, lane) = its_light[0];                                                                           \
+      LANE(light[t].g, lane) = its_light[s->from->plane];                                                              \
+      LANE(light[t].b, lane) = its_light[2 * s->from->plane];                                                          \
+    }                                                                                                                  \
+  }
+  EACH_LANE(READ_LANE)
+#undef READ_LANE
+  const vint same = AS_MASK((m & MATERIAL_MASK) == target->material);
+  for (int t = 0; t < TERMS; ++t) light[t] = keep_rgb(same, light[t]);
+  add_taps(sums, target, its, squared_distance(f, &target->points, z, fx, fy), keep(same, segment), light);
+}
+
+// The axis of the pass, turned by each lane's angle, in 1/4096 px per px.
+FORCED_INLINE void rotated_axis(global const struct RotationParams* rotations, vint index, int axis, vint* dx,
+                                vint* dy) {
+#define READ_LANE(lane)                                           \
+  {                                                               \
+    const struct RotationParams r = rotations[LANE(index, lane)]; \
+    LANE(*dx, lane) = axis == 0 ? r.cosine : r.sine_y;            \
+    LANE(*dy, lane) = axis == 0 ? r.sine_x : r.cosine;            \
+  }
+  EACH_LANE(READ_LANE)
+#undef READ_LANE
+}
+#endif
+
+// The lanes of one material on a curved surface. `clean`: all taps fall on it.
+FORCED_INLINE void scatter_curved(vrgb* result, const struct FrameParams* f, const Pass* s, const Tables* tables,
+                                  global const struct RungParams* rung, global const struct TermParams* terms,
+                                  vint material, int x, int y, const int clean) {
+  const size_t at = pixel_at(s->from, x, y);
+  global const struct WeightParams* weights = tables->weights + rung->first_weight;
+  global const int* offsets = tables->offsets + rung->first_offset;
+  Target target;
+  target.points = points_at(f, load_floats(s->from->depth + at), x, y);
+  target.material = material;
+  target.reciprocal = width_reciprocal(s->from, at);
+  target.footprint = rung->footprint;
+  target.terms = terms;
+  const vfloat core_mm = rung->core_half_width_px * load_floats(s->from->segment + at);
+  Sums sums;
+  vrgb own[TERMS];
+#pragma unroll
+  for (int t = 0; t < TERMS; ++t) {
+    own[t] = load_term(s, t, at);
+    const vrgb core = terms[t].normalised
+                          ? scaled(weights[t].length_mm, look_up(&terms[t].core, times(target.reciprocal, core_mm)))
+                          : same_rgb((vfloat)(0.0f));
+    sums.light[t] = product(core, own[t]);
+    sums.weight[t] = core;
+  }
+  int i = 0;
+#if JITTER
+  vint axis_x, axis_y;
+  rotated_axis(tables->rotations, rotation_index(x + int_lane_numbers(), (vint)(y), tables->seed), s->axis, &axis_x,
+               &axis_y);
+  for (; i < rung->rotated_pairs; ++i) {
+    const vint dx = (offsets[i] * axis_x + 2048) >> 12;
+    const vint dy = (offsets[i] * axis_y + 2048) >> 12;
+    weights += TERMS;
+    add_rotated(&sums, f, s, &target, weights, x, y, dx, dy);
+    add_rotated(&sums, f, s, &target, weights, x, y, -dx, -dy);
+  }
+#endif
+#pragma nounroll
+  for (; i < rung->pairs; ++i) {
+    weights += TERMS;
+#pragma nounroll
+    for (int side = -1; side <= 1; side += 2) {
+      add_straight(&sums, f, s, &target, weights, x, y, side * offsets[i], clean);
+    }
+  }
+  // Where more surface lies within reach than on a plane, a mean divides by it, and a difference must not grow with it.
+  const vrgb all = sums.weight[0];
+  const vrgb share = {1.0f / fmax(all.r, 1.0f), 1.0f / fmax(all.g, 1.0f), 1.0f / fmax(all.b, 1.0f)};
+#pragma unroll
+  for (int t = 0; t < TERMS; ++t) {
+    if (t > 0 && !terms[t].normalised) {
+      sums.light[t] = product(share, sums.light[t]);
+      sums.weight[t] = product(share, sums.weight[t]);
+    }
+    result[t] = finish_term(terms + t, sums.light[t], sums.weight[t], own[t]);
+  }
+}

@@ -1,0 +1,81 @@
+// One separable pass: what it reads, and its sums.
+#include "load.h"
+
+#ifndef TERMS
+#error "TERMS: of every material; those that it does not have weigh nothing"
+#endif
+
+// What the host prepared.
+typedef struct {
+  global const struct MaterialParams* materials;
+  global const struct TermParams* terms;
+  global const struct RungParams* rungs;
+  global const int* offsets;
+  global const struct WeightParams* weights;
+  global const struct FlatWeight* flat_weights;
+  global const struct SmoothWeight* smooth_weights;
+  global const struct RotationParams* rotations;
+  global const struct CellPasses* passes;
+  uint seed;
+} Tables;
+
+// One pass: the horizontal one reads one image of light for all terms, the vertical one an image for each.
+typedef struct {
+  const Window* from;
+  int axis;
+  int x_step, y_step;
+  size_t next_light;  // from the image of one term to that of the next
+} Pass;
+
+typedef struct {
+  vrgb light[TERMS];
+  vrgb weight[TERMS];
+} Sums;
+
+FORCED_INLINE Pass pass_from(const Window* w, int axis) {
+  const Pass pass = {w, axis, axis == 0, axis == 1, axis == 0 ? 0 : 3 * w->plane};
+  return pass;
+}
+
+// The pixel an offset away.
+FORCED_INLINE size_t tap_at(const Pass* s, int x, int y, int offset) {
+  return pixel_at(s->from, x + s->x_step * offset, y + s->y_step * offset);
+}
+
+FORCED_INLINE vrgb load_term(const Pass* s, int t, size_t at) {
+  return load_rgb(s->from->light + t * s->next_light, s->from->plane, at);
+}
+
+// The result of a term from its sums.
+FORCED_INLINE vrgb finish_term(global const struct TermParams* term, vrgb light, vrgb weight, vrgb own) {
+  if (term->normalised) {
+    const vrgb mean = {light.r / weight.r, light.g / weight.g, light.b / weight.b};
+    return mean;
+  }
+  const vrgb missing = {term->sum[0] - weight.r, term->sum[1] - weight.g, term->sum[2] - weight.b};
+  return fused(missing, own, light);
+}
+
+// Whether the V pixels an offset away lie in the frame, some of them.
+FORCED_INLINE int in_frame(const struct FrameParams* f, const Pass* s, int x, int y, int offset) {
+  const int tap_x = x + s->x_step * offset;
+  const int tap_y = y + s->y_step * offset;
+  return tap_x > -V && tap_x < f->width && tap_y >= 0 && tap_y < f->height;
+}
+
+FORCED_INLINE vrgb add_scaled(global const float* factor, vrgb a, vrgb b) {
+  const vrgb result = {fma((vfloat)(factor[0]), a.r, b.r), fma((vfloat)(factor[1]), a.g, b.g),
+                       fma((vfloat)(factor[2]), a.b, b.b)};
+  return result;
+}
+
+// A pair of taps in one channel.
+typedef struct {
+  vfloat after, before;
+} ChannelPair;
+
+FORCED_INLINE ChannelPair load_channel_pair(const Pass* s, int t, int channel, size_t after, size_t before) {
+  global const float* plane = s->from->light + t * s->next_light + channel * s->from->plane;
+  const ChannelPair pair = {load_floats(plane + after), load_floats(plane + before)};
+  return pair;
+}
