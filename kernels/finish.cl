@@ -9,8 +9,8 @@ kernel void finish(struct FrameParams f, global const uchar* surface, global con
                    global const uchar* beauty, struct ImageParams beauty_at, global uchar* scattered,
                    struct ImageParams scattered_at, int writes_scattered, global uchar* result,
                    struct ImageParams result_at, int writes_result, int zeroes_bad, int copies,
-                   global const float* held, global const uchar* kinds, global const struct CellPasses* passes,
-                   int columns) {
+                   global const float* held, global const uchar* kinds, global const int* counters,
+                   global const struct CellPasses* passes, int columns) {
   const Inputs in = {light, albedo, 0, 0, light_at, albedo_at, light_at, light_at, surface};
   const Outputs out = {beauty,    scattered,        result,        beauty_at, scattered_at,
                        result_at, writes_scattered, writes_result, zeroes_bad};
@@ -18,7 +18,7 @@ kernel void finish(struct FrameParams f, global const uchar* surface, global con
   const InputRows rows = input_rows(&f, &in, y);
   const int x_begin = (int)get_global_id(0) * columns;
   const int x_end = min(x_begin + columns, f.width);
-  global const uchar* kinds_of_row = kinds + y / f.tile_height * f.tiles_x;
+  global const uchar* kinds_of_row = copies ? kinds : kinds + y / counters[COUNTER_TILE_HEIGHT] * f.tiles_x;
   global const struct CellPasses* passes_of_row = passes + y / CELL * f.cells_x;
   int next = x_begin;
   for (int begin = x_begin; begin < x_end; begin = next) {

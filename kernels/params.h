@@ -31,7 +31,7 @@ typedef long long Bytes;
 #define NARROW_BIT 0x80
 #define MAX_MATERIALS 127
 
-// Counters of a run, the last six of pixels, or of their channels that are left alone.
+// Counters of a run, those from bad on of pixels, or of their channels that are left alone, and the height of its tiles.
 #define COUNTER_NEXT_TILE 0
 #define COUNTER_WORKERS 1
 #define COUNTER_BAD 2
@@ -40,7 +40,11 @@ typedef long long Bytes;
 #define COUNTER_FLAT 5
 #define COUNTER_SMOOTH 6
 #define COUNTER_CHANNELS 7
-#define RUN_COUNTERS 8
+#define COUNTER_TILE_HEIGHT 8
+#define RUN_COUNTERS 9
+
+// Tiles with something to scatter that every worker should get, so that all end at about the same time.
+#define TILES_PER_WORKER 6
 
 // What became of a tile.
 #define TILE_WITHOUT_MATERIAL 0
@@ -81,9 +85,10 @@ struct FrameParams {
   int cells_x;
   int cells_y;
   int tile_width;
-  int tile_height;
+  int tile_height;  // the largest one
+  int least_tile_height;
   int tiles_x;
-  int tiles_y;
+  int tiles_y;  // of the largest height
   float mm_per_unit;
   float mm_per_px_x;
   float mm_per_px_y;

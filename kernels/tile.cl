@@ -832,6 +832,15 @@ static inline int scatter_tile(const struct FrameParams* f, const Inputs* in, co
   return TILE_FLAT + max(w.shape_across, w.shape_down);
 }
 
+// Lower tiles where little of the frame scatters, so that all workers get some of that. `scattered`: pixels.
+static inline void fit_tiles(struct FrameParams* f, int workers, int scattered) {
+  const float share = (float)scattered / ((float)f->width * f->height);
+  while (f->tile_height >= 2 * f->least_tile_height && share * f->tiles_x * f->tiles_y < TILES_PER_WORKER * workers) {
+    f->tile_height /= 2;
+    f->tiles_y = (f->height + f->tile_height - 1) / f->tile_height;
+  }
+}
+
 kernel void scatter(struct FrameParams f, global const struct MaterialParams* materials,
                     global const struct TermParams* terms, global const struct RungParams* rungs,
                     global const int* offsets, global const struct WeightParams* weights,
@@ -855,6 +864,8 @@ kernel void scatter(struct FrameParams f, global const struct MaterialParams* ma
                        result_at, writes_scattered, writes_result, zeroes_bad};
   const Tables tables = {materials,    terms,          rungs,     offsets, weights,
                          flat_weights, smooth_weights, rotations, passes,  seed};
+  fit_tiles(&f, workers, atomic_add(counters + COUNTER_SCATTERED, 0));
+  atomic_xchg(counters + COUNTER_TILE_HEIGHT, f.tile_height);
   // There are more work-items than workers, as a device may give several to one thread; the first ones do the work.
   global uchar* own_memory = 0;
   int bad = 0;

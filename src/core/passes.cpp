@@ -33,8 +33,9 @@ params::FrameParams frame_params(const Frame& frame, const Options& options, con
   p.cells_y = sizes.cells_y();
   p.tile_width = sizes.tile_width;
   p.tile_height = sizes.tile_height;
+  p.least_tile_height = sizes.least_tile_height;
   p.tiles_x = sizes.tiles_x();
-  p.tiles_y = sizes.tiles_y();
+  p.tiles_y = sizes.tiles_y(sizes.tile_height);
   p.mm_per_unit = static_cast<float>(frame.mm_per_unit);
   if (perspective) {
     p.slope_x = static_cast<float>(1 / camera.scale_x);
@@ -70,21 +71,22 @@ RunSizes run_sizes(const Plan::State& plan, int width, int height) {
   constexpr int tile_width_px = 256;
   constexpr int most_tile_px = 512;
   constexpr int least_tile_px = 32;
-  constexpr int tiles_per_worker = 6;
+  constexpr int least_sparse_tile_px = 64;
   const Options& options = plan.options;
   RunSizes sizes{};
   sizes.width = width;
   sizes.height = height;
   sizes.tile_width = options.tile_width > 0 ? options.tile_width : tile_width_px;
-  sizes.tile_height = options.tile_height;
+  sizes.tile_height = sizes.least_tile_height = options.tile_height;
   sizes.workers = plan.tiled ? std::max(1, plan.device.info().compute_units) : 0;
   if (sizes.tile_height == 0) {
     // Tall tiles compute few rows twice, but every worker should get some.
     sizes.tile_height = most_tile_px;
     while (sizes.tile_height > least_tile_px &&
-           sizes.tiles_x() * sizes.tiles_y() < tiles_per_worker * std::max(1, sizes.workers)) {
+           sizes.tiles_x() * sizes.tiles_y(sizes.tile_height) < TILES_PER_WORKER * std::max(1, sizes.workers)) {
       sizes.tile_height /= 2;
     }
+    sizes.least_tile_height = std::min(sizes.tile_height, least_sparse_tile_px);
   }
   sizes.terms = plan.terms_per_material;
   sizes.turns_taps = options.jitter > 0;
@@ -273,7 +275,7 @@ void Passes::finish() {
                 flag(images_.has(ImageName::scattered)),                                                  //
                 images_.buffer(ImageName::result), images_.layout(ImageName::result),                     //
                 flag(images_.has(ImageName::result)), flag(plan_.options.bad_pixels == BadPixels::zero),  //
-                flag(copies_ || !plan_.tiled), held_, memory_.kinds, memory_.passes,
+                flag(copies_ || !plan_.tiled), held_, memory_.kinds, memory_.counters, memory_.passes,
                 plan_.item_is_pixel ? 1 : params_.width);
   events_.finish.push_back(launch(kernel, runs(), params_.height, plan_.item_is_pixel ? 0 : 1));
 }
@@ -299,7 +301,8 @@ void Passes::add_to(Stats& stats) const {
   stats.pixels_bad = counted[COUNTER_BAD];
   if (!plan_.tiled) return;
   TileMap& tiles = stats.tiles;
-  tiles = {sizes.tile_width, sizes.tile_height, sizes.tiles_x(), sizes.tiles_y(), {}};
+  const int tile_height = counted[COUNTER_TILE_HEIGHT];
+  tiles = {sizes.tile_width, tile_height, sizes.tiles_x(), sizes.tiles_y(tile_height), {}};
   tiles.kinds.resize(static_cast<std::size_t>(tiles.columns) * tiles.rows);
   queue_.enqueueReadBuffer(memory_.kinds, CL_TRUE, 0, tiles.kinds.size(), tiles.kinds.data());
 }

@@ -25,7 +25,7 @@ int RunSizes::stride() const { return round_up(width, CELL) + 2 * PADDING; }
 int RunSizes::cells_x() const { return parts(width, CELL); }
 int RunSizes::cells_y() const { return parts(height, CELL); }
 int RunSizes::tiles_x() const { return parts(width, tile_width); }
-int RunSizes::tiles_y() const { return parts(height, tile_height); }
+int RunSizes::tiles_y(int its_tile_height) const { return parts(height, its_tile_height); }
 
 std::size_t RunSizes::frame_plane() const { return static_cast<std::size_t>(stride()) * height; }
 
@@ -65,7 +65,7 @@ std::size_t RunSizes::held_bytes() const { return 3 * frame_plane() * sizeof(flo
 
 std::size_t RunSizes::bytes(bool holds) const {
   const std::size_t cells = static_cast<std::size_t>(cells_x()) * cells_y();
-  const std::size_t tiles = static_cast<std::size_t>(tiles_x()) * tiles_y();
+  const std::size_t tiles = static_cast<std::size_t>(tiles_x()) * tiles_y(least_tile_height);
   const std::size_t plane_bytes = frame_plane() * sizeof(float);
   std::size_t sum =
       frame_plane() + cells * (sizeof(params::CellParams) + sizeof(params::CellPasses)) + windows_bytes() + tiles;
@@ -82,7 +82,7 @@ RunMemory::RunMemory(const cl::Context& context, const RunSizes& wanted) : sizes
   cells = allocate(cell_count * sizeof(params::CellParams));
   passes = allocate(cell_count * sizeof(params::CellPasses));
   windows = allocate(sizes.windows_bytes());
-  kinds = allocate(static_cast<std::size_t>(sizes.tiles_x()) * sizes.tiles_y());
+  kinds = allocate(static_cast<std::size_t>(sizes.tiles_x()) * sizes.tiles_y(sizes.least_tile_height));
   counters = allocate(RUN_COUNTERS * sizeof(cl_int));
   between = kinds;
   segments = kinds;

@@ -15,10 +15,11 @@ namespace dermis {
 /// What a plan asks of the memory for a frame of some size.
 struct RunSizes {
   int width, height;
-  int tile_width, tile_height;
-  int workers;      ///< work-items that take tiles; 0 if the window is the frame
-  int terms;        ///< images of light between the passes
-  int farthest_px;  ///< no tap is farther
+  int tile_width;
+  int tile_height, least_tile_height;  ///< where little of the frame scatters, tiles are lower
+  int workers;                         ///< work-items that take tiles; 0 if the window is the frame
+  int terms;                           ///< images of light between the passes
+  int farthest_px;                     ///< no tap is farther
   bool has_pixel_width, turns_taps;
   bool exact;
 
@@ -26,7 +27,7 @@ struct RunSizes {
   int cells_x() const;
   int cells_y() const;
   int tiles_x() const;
-  int tiles_y() const;
+  int tiles_y(int its_tile_height) const;
   std::size_t frame_plane() const;   ///< elements
   std::size_t across_plane() const;  ///< of the window of the horizontal pass
   std::size_t down_plane() const;    ///< of the window of the vertical pass; 0 if the window is the frame

@@ -80,6 +80,38 @@ TEST_CASE("pixels without material and narrow kernels keep their bits and are co
   CHECK(changed > 10000);
 }
 
+TEST_CASE("where little of the frame scatters its tiles are lower, and the light is the same", "[skipping]") {
+  const Device device = Device::open("", 1);
+  constexpr int width = 530;
+  constexpr int height = 1030;
+  std::vector<float> light(std::size_t{width} * height * 3);
+  std::vector<std::uint8_t> ids(std::size_t{width} * height);
+  Random random(801);
+  for (float& value : light) value = static_cast<float>(random.uniform(0, 2));
+  Frame frame{.width = width, .height = height, .camera = Camera::orthographic(4, 4)};
+  frame.material = {.host = ids.data(), .buffer = nullptr, .layout = {.format = Format::u8}};
+  const std::vector<dermis::Material> skin{{1, dermis::preset("skin").profile}};
+  std::vector<int> heights;
+  for (const int scattering_rows : {height, 90}) {
+    for (int i = 0; i < width * height; ++i) ids[i] = i / width < scattering_rows ? 1 : 0;
+    std::vector<float> by_itself = light;
+    std::vector<float> fixed = light;
+    for (std::vector<float>* in_place : {&by_itself, &fixed}) {
+      frame.light.host = in_place->data();
+      frame.scattered.host = in_place->data();
+      const Plan plan(device, skin, FrameDescription::of(frame), {.tile_height = in_place == &fixed ? 48 : 0});
+      const Stats stats = plan.run(frame);
+      CHECK(stats.tiles.rows == (height + stats.tiles.tile_height - 1) / stats.tiles.tile_height);
+      REQUIRE(stats.tiles.kinds.size() == static_cast<std::size_t>(stats.tiles.columns) * stats.tiles.rows);
+      const int tile_rows = (scattering_rows + stats.tiles.tile_height - 1) / stats.tiles.tile_height;
+      CHECK(stats.count(TileKind::flat) == static_cast<std::int64_t>(stats.tiles.columns) * tile_rows);
+      if (in_place == &by_itself) heights.push_back(stats.tiles.tile_height);
+    }
+    REQUIRE(std::memcmp(by_itself.data(), fixed.data(), fixed.size() * sizeof(float)) == 0);
+  }
+  CHECK(heights[1] < heights[0]);
+}
+
 TEST_CASE("light does not cross from one material to another", "[skipping]") {
   const Device device = Device::open();
   constexpr int width = 90;
