@@ -31,7 +31,8 @@ typedef long long Bytes;
 #define NARROW_BIT 0x80
 #define MAX_MATERIALS 127
 
-// Counters of a run, those from bad on of pixels, or of their channels that are left alone, and the height of its tiles.
+// Counters of a run, those from bad on of pixels, or of their channels that are left alone, and the height of its
+// tiles.
 #define COUNTER_NEXT_TILE 0
 #define COUNTER_WORKERS 1
 #define COUNTER_BAD 2
