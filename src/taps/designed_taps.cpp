@@ -160,9 +160,9 @@ SizedTaps DesignedTaps::fitted(double pixel_mm, int last_px, Fetch fetch, Search
                                const std::vector<double>& near_px) const {
   // Few taps are better spent nearer than where the last thousandths of the light are.
   constexpr double share_worth_a_tap = 0.998;
-  const int farthest_px =
+  const int worth_px =
       static_cast<int>(std::ceil(profile_.half_width(profile_.widest_channel(), share_worth_a_tap) / pixel_mm - 0.5));
-  last_px = std::max({1, design_.count / 2, std::min(last_px, farthest_px)});
+  last_px = std::max({1, design_.count / 2, std::min(last_px, worth_px)});
   if (search != Search::everywhere) {
     // The farthest tap is not far from where it was.
     const int near_last_px = static_cast<int>(near_px.back() * 1.25) + 2;
