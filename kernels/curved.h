@@ -54,6 +54,70 @@ FORCED_INLINE void add_straight(Sums* sums, const struct FrameParams* f, const P
   add_taps(sums, target, its, r_squared, segment, light);
 }
 
+#if SHEARED
+// How far the lanes of a material are sheared: columns per row, times 4096.
+typedef struct {
+  vint lanes;
+  int low, high;
+} Shears;
+
+FORCED_INLINE Shears shears_at(const struct FrameParams* f, const Window* w, vint material, int x, int y) {
+  Shears shears;
+  const vint mine = AS_MASK((load_bytes(w->surface + pixel_at(w, x, y)) & MATERIAL_MASK) == material);
+  shears.lanes = shear_at(f, w, x, y) & mine;
+  shears.low = lowest_lane(shears.lanes);
+  shears.high = highest_lane(shears.lanes);
+  return shears;
+}
+
+// Whether some lane has a tap to its side, none of which are farther away than that.
+FORCED_INLINE int is_sheared(const Shears* shears, int farthest_px) {
+  return side_of(shears->low, farthest_px) != 0 || side_of(shears->high, farthest_px) != 0 ||
+         side_of(shears->low, -farthest_px) != 0 || side_of(shears->high, -farthest_px) != 0;
+}
+
+// Adds the pixels so many rows away, each lane its own to the side, of one run of PICKED pixels. Returns whether there
+// is another run.
+FORCED_INLINE int add_sheared(Sums* sums, const struct FrameParams* f, const Pass* s, const Target* target,
+                              global const struct WeightParams* its, const Shears* shears, int x, int y, int offset,
+                              int run, const int clean) {
+  const Window* w = s->from;
+  if (!clean && (y + offset < 0 || y + offset >= f->height)) return 0;
+  const vint side = sides_of(shears->lanes, offset);
+  const vint to_x = x + int_lane_numbers() + side;
+  const int one_end = side_of(shears->low, offset);
+  const int other_end = side_of(shears->high, offset);
+  const int from = x + min(one_end, other_end) + run * PICKED;
+  // There is no memory beyond the window.
+  const int begin = clamp(from, w->x_begin - PADDING, w->x_end + PADDING - PICKED);
+  const vint index = (to_x - begin) & (PICKED - 1);
+  const size_t at = pixel_at(w, begin, y + offset);
+  const int has_more = from + PICKED < x + V + max(one_end, other_end);
+  vfloat segment = pick(w->segment + at, index);
+  const vfloat z = pick(w->depth + at, index);
+  const vfloat r_squared = squared_distance_down(f, &target->points, z, as_floats(side), (float)offset);
+  vrgb light[TERMS];
+#pragma unroll
+  for (int t = 0; t < TERMS; ++t) {
+    global const float* its_light = w->light + t * s->next_light + at;
+    light[t].r = pick(its_light, index);
+    light[t].g = pick(its_light + w->plane, index);
+    light[t].b = pick(its_light + 2 * w->plane, index);
+  }
+  if (!clean || run > 0 || has_more) {
+    vint there = AS_MASK(to_x >= from) & AS_MASK(to_x < from + PICKED);
+    if (!clean) {
+      there &= AS_MASK(to_x >= 0) & AS_MASK(to_x < f->width) &
+               AS_MASK((pick_bytes(w->material + at, index) & MATERIAL_MASK) == target->material);
+    }
+    segment = keep(there, segment);
+    for (int t = 0; t < TERMS; ++t) light[t] = keep_rgb(there, light[t]);
+  }
+  add_taps(sums, target, its, r_squared, segment, light);
+  return has_more;
+}
+#endif
+
 #if JITTER
 // Adds the pixels (dx, dy) away, different for each lane.
 FORCED_INLINE void add_rotated(Sums* sums, const struct FrameParams* f, const Pass* s, const Target* target,
@@ -101,6 +165,12 @@ FORCED_INLINE void rotated_axis(global const struct RotationParams* rotations, v
 }
 #endif
 
+// Taps of a pair follow each other, the one before the pixel first.
+FORCED_INLINE int offset_of(global const int* offsets, int tap) {
+  const int offset = offsets[tap / 2];
+  return tap % 2 == 0 ? -offset : offset;
+}
+
 // The lanes of one material on a curved surface. `clean`: all taps fall on it.
 FORCED_INLINE void scatter_curved(vrgb* result, const struct FrameParams* f, const Pass* s, const Tables* tables,
                                   global const struct RungParams* rung, global const struct TermParams* terms,
@@ -134,18 +204,32 @@ FORCED_INLINE void scatter_curved(vrgb* result, const struct FrameParams* f, con
   for (; i < rung->rotated_pairs; ++i) {
     const vint dx = (offsets[i] * axis_x + 2048) >> 12;
     const vint dy = (offsets[i] * axis_y + 2048) >> 12;
-    weights += TERMS;
-    add_rotated(&sums, f, s, &target, weights, x, y, dx, dy);
-    add_rotated(&sums, f, s, &target, weights, x, y, -dx, -dy);
+    global const struct WeightParams* its = weights + (i + 1) * TERMS;
+    add_rotated(&sums, f, s, &target, its, x, y, dx, dy);
+    add_rotated(&sums, f, s, &target, its, x, y, -dx, -dy);
+  }
+#endif
+  // One loop, as what does not change in an inner one would be loaded for each of its few rounds.
+  int tap = 2 * i;
+#if SHEARED
+  const Shears straight = {(vint)(0), 0, 0};
+  const Shears shears = s->axis == 1 ? shears_at(f, s->from, material, x, y) : straight;
+  if (s->axis == 1 && is_sheared(&shears, rung->last_offset_px)) {
+    int run = 0;
+#pragma nounroll
+    while (tap < 2 * rung->pairs) {
+      global const struct WeightParams* its = weights + (tap / 2 + 1) * TERMS;
+      const int offset = offset_of(offsets, tap);
+      const int is_done = !add_sheared(&sums, f, s, &target, its, &shears, x, y, offset, run, clean);
+      tap += is_done;
+      run = is_done ? 0 : run + 1;
+    }
   }
 #endif
 #pragma nounroll
-  for (; i < rung->pairs; ++i) {
-    weights += TERMS;
-#pragma nounroll
-    for (int side = -1; side <= 1; side += 2) {
-      add_straight(&sums, f, s, &target, weights, x, y, side * offsets[i], clean);
-    }
+  for (; tap < 2 * rung->pairs; ++tap) {
+    global const struct WeightParams* its = weights + (tap / 2 + 1) * TERMS;
+    add_straight(&sums, f, s, &target, its, x, y, offset_of(offsets, tap), clean);
   }
   // Where more surface lies within reach than on a plane, a mean divides by it, and a difference must not grow with it.
   const vrgb all = sums.weight[0];

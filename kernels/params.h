@@ -58,6 +58,9 @@ typedef long long Bytes;
 #define TILE_REUSED 7  // nothing within reach has changed since the frame before
 #define TILE_KINDS 8
 
+// No tap of the vertical pass lies more columns than this from its pixel, unless it is rotated: shear in taps.hpp.
+#define MOST_SIDE 32
+
 // Directions of the rotation of tap axes.
 #define ROTATIONS 256
 
@@ -117,6 +120,7 @@ struct CellParams {
 struct CellPass {
   float footprint;  // that its rungs are chosen by, px per mm; 0 if nothing scatters
   int shape;
+  int shear;     // of flat and smooth cells in the vertical pass, px per row times 4096
   int material;  // 1 + the index of the only one that taps fall on, all in the frame; 0 if there is more than that
 };
 
@@ -133,9 +137,11 @@ struct CellPasses {
 // How the pixels of a cell are scattered in one pass.
 struct ChoiceParams {
   int way;
-  int material;  // index
-  int rung;      // index
-  int weight;    // index of the first flat or smooth one
+  int material;    // index
+  int rung;        // index
+  int weight;      // index of the first flat or smooth one
+  int shear;       // as in CellPass
+  int padding[3];  // the memory of the next worker, which follows them, has to be aligned
 };
 
 // There is nothing, or all taps fall on the material of the cell, which has that shape, or they fall on anything.

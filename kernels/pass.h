@@ -1,5 +1,6 @@
 // One separable pass: what it reads, and its sums.
 #include "load.h"
+#include "tangent.h"
 
 #ifndef TERMS
 #error "TERMS: of every material; those that it does not have weigh nothing"
@@ -23,7 +24,8 @@ typedef struct {
 typedef struct {
   const Window* from;
   int axis;
-  int x_step, y_step;
+  int y_step;
+  int shear;          // of the vertical pass, columns per row times 4096
   size_t next_light;  // from the image of one term to that of the next
 } Pass;
 
@@ -32,14 +34,18 @@ typedef struct {
   vrgb weight[TERMS];
 } Sums;
 
-FORCED_INLINE Pass pass_from(const Window* w, int axis) {
-  const Pass pass = {w, axis, axis == 0, axis == 1, axis == 0 ? 0 : 3 * w->plane};
+FORCED_INLINE Pass pass_from(const Window* w, int axis, int shear) {
+  const Pass pass = {w, axis, axis == 1, shear, axis == 0 ? 0 : 3 * w->plane};
   return pass;
+}
+
+FORCED_INLINE int tap_x(const Pass* s, int x, int offset) {
+  return s->axis == 0 ? x + offset : x + side_of(s->shear, offset);
 }
 
 // The pixel an offset away.
 FORCED_INLINE size_t tap_at(const Pass* s, int x, int y, int offset) {
-  return pixel_at(s->from, x + s->x_step * offset, y + s->y_step * offset);
+  return pixel_at(s->from, tap_x(s, x, offset), y + s->y_step * offset);
 }
 
 FORCED_INLINE vrgb load_term(const Pass* s, int t, size_t at) {
@@ -58,9 +64,9 @@ FORCED_INLINE vrgb finish_term(global const struct TermParams* term, vrgb light,
 
 // Whether the V pixels an offset away lie in the frame, some of them.
 FORCED_INLINE int in_frame(const struct FrameParams* f, const Pass* s, int x, int y, int offset) {
-  const int tap_x = x + s->x_step * offset;
-  const int tap_y = y + s->y_step * offset;
-  return tap_x > -V && tap_x < f->width && tap_y >= 0 && tap_y < f->height;
+  const int at_x = tap_x(s, x, offset);
+  const int at_y = y + s->y_step * offset;
+  return at_x > -V && at_x < f->width && at_y >= 0 && at_y < f->height;
 }
 
 FORCED_INLINE vrgb add_scaled(global const float* factor, vrgb a, vrgb b) {

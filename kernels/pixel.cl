@@ -25,7 +25,7 @@ kernel void scatter_x(SCATTER_ARGUMENTS) {
   const Tables tables = {materials,    terms,          rungs,     offsets, weights,
                          flat_weights, smooth_weights, rotations, passes,  seed};
   const Window w = window_in(window, plane, 1, memory);
-  const Pass pass = pass_from(&w, 0);
+  const Pass pass = pass_from(&w, 0, 0);
   const int x = get_global_id(0);
   const int y = get_global_id(1);
   vrgb result[TERMS];
@@ -39,7 +39,7 @@ kernel void scatter_y(SCATTER_ARGUMENTS, global float* held) {
   Window w = window_in(window, plane, 1, memory);
   w.light = between;
   w.segment = down_segment;
-  const Pass pass = pass_from(&w, 1);
+  const Pass pass = pass_from(&w, 1, 0);
   const int x = get_global_id(0);
   const int y = get_global_id(1);
   vrgb result[TERMS];

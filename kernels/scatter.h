@@ -29,6 +29,8 @@ SHARED void scatter_pixels(vrgb* result, const struct FrameParams* f, const Pass
   const size_t at = pixel_at(s->from, x, y);
   const vint m = load_bytes(s->from->material + at);
   const struct CellPass pass = cell_pass(f, tables, x / CELL, y / CELL, s->axis);
+  Pass its_pass = *s;
+  its_pass.shear = pass.shear;
   for (int t = 0; t < TERMS; ++t) result[t] = same_rgb((vfloat)(0.0f));
   for (int i = 0; i < MATERIALS; ++i) {
     const vint material = (vint)(i + 1);
@@ -43,12 +45,12 @@ SHARED void scatter_pixels(vrgb* result, const struct FrameParams* f, const Pass
     if (has_taps) {
       global const struct RungParams* rung = tables->rungs + its->first_rung + step.rung;
       if (pass.shape == SHAPE_CURVED) {
-        scatter_curved(scattered, f, s, tables, rung, terms, material, x, y, 0);
+        scatter_curved(scattered, f, &its_pass, tables, rung, terms, material, x, y, 0);
       } else if (pass.shape == SHAPE_SMOOTH) {
-        scatter_smooth(scattered, f, s, tables, rung, terms, material, x, y);
+        scatter_smooth(scattered, f, &its_pass, tables, rung, terms, material, x, y);
       } else {
-        scatter_flat(scattered, f, s, tables, rung, tables->flat_weights + first_flat_weight(rung, step.part), terms,
-                     material, x, y);
+        scatter_flat(scattered, f, &its_pass, tables, rung, tables->flat_weights + first_flat_weight(rung, step.part),
+                     terms, material, x, y);
       }
     }
 #pragma unroll

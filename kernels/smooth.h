@@ -1,7 +1,7 @@
 // Smooth cells: weights to first order in the stretch and the skew of each pixel. See Taps in taps.hpp.
+#include "bend.h"
 #include "pass.h"
 #include "rung.h"
-#include "tangent.h"
 
 // The sums of a smooth cell that its weights are made of.
 typedef struct {
@@ -59,7 +59,7 @@ FORCED_INLINE void scatter_smooth_clean(vrgb* result, const struct FrameParams* 
                                         global const struct RungParams* rung, global const int* offsets,
                                         global const struct SmoothWeight* weights, int x, int y) {
   const size_t at = pixel_at(s->from, x, y);
-  const Bend bend = bend_at(f, s->from, rung, x, y, s->axis, 1);
+  const Bend bend = bend_at(f, s->from, rung, x, y, s->axis, s->shear, 1);
   SmoothSums sums[TERMS];
 #pragma unroll
   for (int t = 0; t < TERMS; ++t) sums[t] = smooth_centre(weights + t, load_term(s, t, at));
@@ -99,7 +99,7 @@ FORCED_INLINE void scatter_smooth(vrgb* result, const struct FrameParams* f, con
   const size_t at = pixel_at(s->from, x, y);
   global const int* offsets = tables->offsets + rung->first_offset;
   global const struct SmoothWeight* weights = tables->smooth_weights + rung->first_smooth_weight;
-  const Bend bend = bend_at(f, s->from, rung, x, y, s->axis, 0);
+  const Bend bend = bend_at(f, s->from, rung, x, y, s->axis, s->shear, 0);
   vrgb own[TERMS];
   SmoothSums light[TERMS];
   SmoothSums weight[TERMS];

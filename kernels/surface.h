@@ -25,6 +25,16 @@ FORCED_INLINE vfloat squared_distance(const struct FrameParams* f, const Points*
   return fma(delta_x, delta_x, fma(delta_y, delta_y, delta_z * delta_z));
 }
 
+// The same for points of the row that lies `offset` pixels below, each of them so many columns to its side. To the side
+// 0 it gives the bits of squared_distance_along.
+FORCED_INLINE vfloat squared_distance_down(const struct FrameParams* f, const Points* p, vfloat z, vfloat side,
+                                           float offset) {
+  const vfloat delta_z = z - p->z;
+  const vfloat down = fma(p->y_per_z, delta_z, offset * fma(z, (vfloat)(f->slope_y), (vfloat)(f->mm_per_px_y)));
+  const vfloat across = fma(p->x_per_z, delta_z, side * fma(z, (vfloat)(f->slope_x), (vfloat)(f->mm_per_px_x)));
+  return fma(down, down, fma(across, across, delta_z * delta_z));
+}
+
 // The same along one axis.
 FORCED_INLINE vfloat squared_distance_along(const struct FrameParams* f, const Points* p, vfloat z, float offset,
                                             int axis) {

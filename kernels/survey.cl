@@ -2,6 +2,7 @@
 #include "image.h"
 #include "rung.h"
 #include "shape.h"
+#include "shear.h"
 #include "vector.h"
 
 // How many cells before their turn the images are fetched.
@@ -351,39 +352,54 @@ static inline void join_cell(Shape* shape, global const struct CellParams* its, 
        axis == 0 ? its->along_y_high : its->along_x_high);
 }
 
-// How the camera sees a cell along a pass.
+// How the camera sees a cell along a pass, and across it.
 typedef struct {
-  float ray_along, ray_across;  // change of position with depth along the ray through the middle
-  float slope, mm_per_px;       // along the pass
+  float ray_along, ray_across;      // change of position with depth along the ray through the middle
+  float slope_along, slope_across;  // as in FrameParams
+  float mm_along, mm_across;
 } CellView;
 
 static inline CellView view_of(const struct FrameParams* f, int cell_x, int cell_y, int axis) {
   const float ray_x = f->slope_x * (cell_x * CELL + 0.5f * CELL - f->center_x);
   const float ray_y = f->slope_y * (cell_y * CELL + 0.5f * CELL - f->center_y);
-  const CellView view = {axis == 0 ? ray_x : ray_y, axis == 0 ? ray_y : ray_x, axis == 0 ? f->slope_x : f->slope_y,
-                         axis == 0 ? f->mm_per_px_x : f->mm_per_px_y};
-  return view;
+  const CellView x = {ray_x, ray_y, f->slope_x, f->slope_y, f->mm_per_px_x, f->mm_per_px_y};
+  const CellView y = {ray_y, ray_x, f->slope_y, f->slope_x, f->mm_per_px_y, f->mm_per_px_x};
+  return axis == 0 ? x : y;
 }
 
-// |T|^2 in the middle of a shape.
-static inline float squared_tangent(CellView view, const Shape* shape) {
-  const float g = middle(shape->along);
-  const float along = view.mm_per_px + view.slope * middle(shape->depth) + view.ray_along * g;
-  return along * along + (view.ray_across * view.ray_across + 1.0f) * g * g;
+// |T|^2 in the middle of a shape, along the pass and so many pixels across it for each.
+static inline float squared_tangent(CellView view, const Shape* shape, float side) {
+  const float z = middle(shape->depth);
+  const float g = middle(shape->along) + side * middle(shape->across);
+  const float along = view.mm_along + view.slope_along * z + view.ray_along * g;
+  const float across = side * (view.mm_across + view.slope_across * z) + view.ray_across * g;
+  return along * along + across * across + g * g;
 }
 
-static inline int shape_of(const struct FrameParams* f, CellView view, const Shape* shape, int along_px,
-                           int across_px) {
-  const float g = middle(shape->along);
-  const float dg = half_range(shape->along);
-  const float change = view.slope * half_range(shape->depth) + fabs(view.ray_along) * dg;
-  const float length2 = squared_tangent(view, shape);
-  const float change2 = change * change + (view.ray_across * view.ray_across + 1.0f) * dg * dg;
-  const float slopes =
-      along_px * (fabs(g) + dg) + across_px * (fabs(middle(shape->across)) + half_range(shape->across));
-  if (!(2.0f * half_range(shape->depth) <= slopes + sqrt(length2))) return SHAPE_CURVED;
+static inline int shape_of(CellView view, const Shape* shape, float side, int along_px, int across_px) {
+  const float dz = half_range(shape->depth);
+  const float dg = half_range(shape->along) + fabs(side) * half_range(shape->across);
+  const float change_along = view.slope_along * dz + fabs(view.ray_along) * dg;
+  const float change_across = fabs(side) * view.slope_across * dz + fabs(view.ray_across) * dg;
+  const float length2 = squared_tangent(view, shape, side);
+  const float change2 = change_along * change_along + change_across * change_across + dg * dg;
+  const float slopes = along_px * (fabs(middle(shape->along)) + half_range(shape->along)) +
+                       across_px * (fabs(middle(shape->across)) + half_range(shape->across));
+  if (!(2.0f * dz <= slopes + sqrt(length2))) return SHAPE_CURVED;
   if (change2 <= FLATNESS * FLATNESS * length2) return SHAPE_FLAT;
   return change2 <= SMOOTHNESS * SMOOTHNESS * length2 ? SHAPE_SMOOTH : SHAPE_CURVED;
+}
+
+// The shear of the vertical pass in the middle of a cell, columns per row times 4096: see shear_of. `view` is along y.
+static inline int shear_of_cell(CellView view, const Shape* its) {
+  const float z = middle(its->depth);
+  const float gx = middle(its->across);
+  const float gy = middle(its->along);
+  const float size_x = view.mm_across + view.slope_across * z + view.ray_across * gx;
+  const float size_y = view.mm_along + view.slope_along * z + view.ray_along * gy;
+  const float mixed = size_x * view.ray_across * gy + view.ray_along * gx * size_y + gx * gy;
+  const float shear = -mixed / (size_x * size_x + (view.ray_along * view.ray_along + 1.0f) * gx * gx);
+  return fabs(shear) < INFINITY ? (int)rint(4096.0f * clamp(shear, -1.0f, 1.0f)) : 0;
 }
 
 // The farthest tap of the materials that a cell scatters by, px.
@@ -397,15 +413,40 @@ static inline int farthest_tap_of(global const struct CellParams* cell, global c
   return farthest;
 }
 
-// 1 + the index of the material of all pixels within reach along the pass, or 0: `cell` is the place along the pass.
-static inline int material_within(global const struct CellParams* own, int cell, int step, int size_px, int reach_px) {
-  const int first_px = cell * CELL - reach_px;
-  const int last_px = cell * CELL + CELL - 1 + reach_px;
-  if (first_px < 0 || last_px >= size_px) return 0;
-  for (int i = first_px / CELL; i <= last_px / CELL; ++i) {
-    if (own[(i - cell) * step].material != own->material) return 0;
+// Some cells of a frame.
+typedef struct {
+  int x_begin, x_end;
+  int y_begin, y_end;
+} CellBox;
+
+// Those that lie at least partly within so many pixels of a cell, along a pass and across it.
+static inline CellBox cells_around(const struct FrameParams* f, int cell_x, int cell_y, int axis, int along_px,
+                                   int across_px) {
+  const int x_px = axis == 0 ? along_px : across_px;
+  const int y_px = axis == 0 ? across_px : along_px;
+  const CellBox box = {
+      max(cell_x * CELL - x_px, 0) / CELL, min(cell_x * CELL + CELL - 1 + x_px, f->width - 1) / CELL + 1,
+      max(cell_y * CELL - y_px, 0) / CELL, min(cell_y * CELL + CELL - 1 + y_px, f->height - 1) / CELL + 1};
+  return box;
+}
+
+// 1 + the index of the material of all pixels within reach, all in the frame, or 0.
+static inline int material_within(const struct FrameParams* f, global const struct CellParams* cells, int cell_x,
+                                  int cell_y, int axis, int along_px, int across_px) {
+  const int x_px = axis == 0 ? along_px : across_px;
+  const int y_px = axis == 0 ? across_px : along_px;
+  if (cell_x * CELL < x_px || cell_x * CELL + CELL - 1 + x_px >= f->width || cell_y * CELL < y_px ||
+      cell_y * CELL + CELL - 1 + y_px >= f->height) {
+    return 0;
   }
-  return own->material;
+  const int material = cells[cell_y * f->cells_x + cell_x].material;
+  const CellBox box = cells_around(f, cell_x, cell_y, axis, along_px, across_px);
+  for (int y = box.y_begin; y < box.y_end; ++y) {
+    for (int x = box.x_begin; x < box.x_end; ++x) {
+      if (cells[y * f->cells_x + x].material != material) return 0;
+    }
+  }
+  return material;
 }
 
 // See Taps in taps.hpp.
@@ -413,41 +454,51 @@ static inline struct CellPass pass_over(const struct FrameParams* f, global cons
                                         global const struct RungParams* rungs, global const struct CellParams* cells,
                                         int cell_x, int cell_y, int axis) {
   global const struct CellParams* own = cells + cell_y * f->cells_x + cell_x;
-  struct CellPass pass = {0.0f, SHAPE_CURVED, 0};
+  struct CellPass pass = {0.0f, SHAPE_CURVED, 0, 0};
   if (own->scattered == 0) {
     if (own->narrow == 0) pass.shape = SHAPE_EMPTY;
     return pass;
   }
-  const int size_px = axis == 0 ? f->width : f->height;
-  const int cell = axis == 0 ? cell_x : cell_y;
-  const int step = axis == 0 ? 1 : f->cells_x;
   pass.footprint = axis == 0 ? own->finest_x : own->finest_y;
 #if !HAS_DEPTH && !PIXEL_WIDTH && !JITTER
   pass.shape = SHAPE_FLAT;
 #elif !PIXEL_WIDTH && !JITTER
   // Footprints of flat and smooth cells may be a little larger.
   const int farthest_px = farthest_tap_of(own, materials, rungs, pass.footprint, SHAPE_CURVED);
-  const int reach_px = min(farthest_px + farthest_px / 8, size_px);
-  const int first = max(cell * CELL - reach_px, 0) / CELL;
-  const int last = min(cell * CELL + CELL - 1 + reach_px, size_px - 1) / CELL;
+  const int reach_px = min(farthest_px + farthest_px / 8, max(f->width, f->height));
   const Interval nothing = {INFINITY, -INFINITY};
-  Shape within_reach = {nothing, nothing, nothing};
-  for (int i = first; i <= last; ++i) join_cell(&within_reach, own + (i - cell) * step, axis);
-  const int along_px = min((last + 1) * CELL, size_px) - first * CELL;
-  const int across_px = axis == 0 ? min(CELL, f->height - cell_y * CELL) : min(CELL, f->width - cell_x * CELL);
+  const Shape unseen = {nothing, nothing, nothing};
   const CellView view = view_of(f, cell_x, cell_y, axis);
-  pass.shape = shape_of(f, view, &within_reach, along_px, across_px);
+  Shape within_cell = unseen;
+  join_cell(&within_cell, own, axis);
+  if (axis == 1) pass.shear = shear_of_cell(view, &within_cell);
+  const int side_px = side_of(abs(pass.shear), reach_px);
+  if (side_px == 0) pass.shear = 0;
+  const CellBox box = cells_around(f, cell_x, cell_y, axis, reach_px, side_px);
+  Shape within_reach = unseen;
+  for (int y = box.y_begin; y < box.y_end; ++y) {
+    for (int x = box.x_begin; x < box.x_end; ++x) join_cell(&within_reach, cells + y * f->cells_x + x, axis);
+  }
+  const int x_px = min(box.x_end * CELL, f->width) - box.x_begin * CELL;
+  const int y_px = min(box.y_end * CELL, f->height) - box.y_begin * CELL;
+  const float side = pass.shear / 4096.0f;
+  pass.shape = shape_of(view, &within_reach, side, axis == 0 ? x_px : y_px, axis == 0 ? y_px : x_px);
   if (pass.shape == SHAPE_FLAT) {
-    pass.footprint = 1.0f / sqrt(squared_tangent(view, &within_reach));
+    pass.footprint = 1.0f / sqrt(squared_tangent(view, &within_reach, side));
   } else if (pass.shape == SHAPE_SMOOTH) {
-    Shape within_cell = {nothing, nothing, nothing};
-    join_cell(&within_cell, own, axis);
-    pass.footprint = 1.0f / sqrt(squared_tangent(view, &within_cell));
+    pass.footprint = 1.0f / sqrt(squared_tangent(view, &within_cell, side));
+  } else {
+    pass.shear = 0;
   }
 #endif
   // A smooth cell looks at the next pixel even without taps.
   const int taps_px = max(farthest_tap_of(own, materials, rungs, pass.footprint, pass.shape), 1);
-  pass.material = material_within(own, cell, step, size_px, min(taps_px, size_px));
+  int across_px = 0;
+#if SHEARED
+  if (axis == 1 && pass.shape == SHAPE_CURVED) across_px = min(taps_px, MOST_SIDE);
+  if (pass.shear != 0) across_px = max(side_of(abs(pass.shear), taps_px), 1);
+#endif
+  pass.material = material_within(f, cells, cell_x, cell_y, axis, taps_px, across_px);
   return pass;
 }
 

@@ -1,4 +1,5 @@
 // How depth and position change from pixel to pixel along a surface.
+#include "shear.h"
 #include "surface.h"
 #include "window.h"
 
@@ -39,60 +40,34 @@ static inline Tangent tangent_y(const struct FrameParams* f, const Points* p, vf
 
 static inline vfloat squared_length(Tangent t) { return fma(t.x, t.x, fma(t.y, t.y, t.z * t.z)); }
 
-// The length of surface that each pixel spans along an axis, mm.
-SHARED vfloat segment_length(const struct FrameParams* f, const Window* w, int x, int y, int axis) {
-  const Points p = points_at(f, load_floats(w->depth + pixel_at(w, x, y)), x, y);
-  const vfloat slope = depth_slope(f, w, x, y, axis == 0, axis == 1);
-  return sqrt(squared_length(axis == 0 ? tangent_x(f, &p, slope) : tangent_y(f, &p, slope)));
+#if SHEARED
+// Columns per row: at a right angle to (1, 0).
+static inline vfloat shear_of(Tangent x, Tangent y) {
+  const vfloat shear = -fma(x.x, y.x, fma(x.y, y.y, x.z * y.z)) / squared_length(x);
+  // Not a number where lengths underflow.
+  return keep(AS_MASK(fabs(shear) < INFINITY), clamp(shear, (vfloat)(-1.0f), (vfloat)(1.0f)));
 }
 
-// How a smooth surface differs from the plane of a rung: q and k of Taps in taps.hpp.
-typedef struct {
-  vfloat stretch, skew;
-} Bend;
-
-#ifndef MOST_STRETCH
-#error "MOST_STRETCH"
-#endif
-#ifndef MOST_SKEW
-#error "MOST_SKEW"
+// In columns per row, times 4096.
+static inline vint shear_at(const struct FrameParams* f, const Window* w, int x, int y) {
+  const Points p = points_at(f, load_floats(w->depth + pixel_at(w, x, y)), x, y);
+  const Tangent along_x = tangent_x(f, &p, depth_slope(f, w, x, y, 1, 0));
+  const Tangent along_y = tangent_y(f, &p, depth_slope(f, w, x, y, 0, 1));
+  return whole(rint(4096.0f * shear_of(along_x, along_y)));
+}
 #endif
 
-// `clean`: all neighbours along the axis are of the same material.
-FORCED_INLINE Bend bend_at(const struct FrameParams* f, const Window* w, global const struct RungParams* rung, int x,
-                           int y, int axis, const int clean) {
-  const size_t at = pixel_at(w, x, y);
-  const int has_row_before = clean || axis == 0 || y > 0;
-  const int has_row_after = clean || axis == 0 || y + 1 < f->height;
-  const size_t before = has_row_before ? pixel_at(w, x - (axis == 0), y - (axis == 1)) : at;
-  const size_t after = has_row_after ? pixel_at(w, x + (axis == 0), y + (axis == 1)) : at;
-  const Points p = points_at(f, load_floats(w->depth + at), x, y);
-  vfloat backward = p.z - load_floats(w->depth + before);
-  vfloat forward = load_floats(w->depth + after) - p.z;
-  if (!clean) {
-    const vint m = load_bytes(w->surface + at) & MATERIAL_MASK;
-    const vint has_before = AS_MASK((load_bytes(w->surface + before) & MATERIAL_MASK) == m) & (vint)(-has_row_before);
-    const vint has_after = AS_MASK((load_bytes(w->surface + after) & MATERIAL_MASK) == m) & (vint)(-has_row_after);
-    const vfloat from_before = keep(has_before, backward);
-    const vfloat to_after = keep(has_after, forward);
-    backward = select(to_after, from_before, has_before);
-    forward = select(from_before, to_after, has_after);
-  }
-  const float pixel_slope = axis == 0 ? f->slope_x : f->slope_y;
-  const vfloat ray_along = axis == 0 ? p.x_per_z : p.y_per_z;
-  const vfloat ray_across = axis == 0 ? p.y_per_z : p.x_per_z;
-  const vfloat slope = 0.5f * (forward + backward);
-  const vfloat change = forward - backward;
-  const vfloat size = fma(p.z, (vfloat)(pixel_slope), (vfloat)(axis == 0 ? f->mm_per_px_x : f->mm_per_px_y));
-  const vfloat along = fma(ray_along, slope, size);
-  const vfloat along_change = fma(ray_along, change, 2.0f * pixel_slope * slope);
-  const vfloat depth_factor = fma(ray_across, ray_across, (vfloat)(1.0f)) * slope;
-  const float square = rung->footprint * rung->footprint;
-  const float most_skew = MOST_SKEW / rung->last_offset_px;
-  Bend bend;
-  bend.stretch = clamp(fma((vfloat)(square), fma(along, along, depth_factor * slope), (vfloat)(-1.0f)),
-                       (vfloat)(-MOST_STRETCH), (vfloat)(MOST_STRETCH));
-  bend.skew =
-      clamp(square * fma(along, along_change, depth_factor * change), (vfloat)(-most_skew), (vfloat)(most_skew));
-  return bend;
+// The length of surface that each pixel spans along a pass, mm.
+SHARED vfloat segment_length(const struct FrameParams* f, const Window* w, int x, int y, int axis) {
+  const Points p = points_at(f, load_floats(w->depth + pixel_at(w, x, y)), x, y);
+  if (axis == 0) return sqrt(squared_length(tangent_x(f, &p, depth_slope(f, w, x, y, 1, 0))));
+  Tangent along = tangent_y(f, &p, depth_slope(f, w, x, y, 0, 1));
+#if SHEARED
+  const Tangent along_x = tangent_x(f, &p, depth_slope(f, w, x, y, 1, 0));
+  const vfloat shear = shear_of(along_x, along);
+  along.x = fma(shear, along_x.x, along.x);
+  along.y = fma(shear, along_x.y, along.y);
+  along.z = fma(shear, along_x.z, along.z);
+#endif
+  return sqrt(squared_length(along));
 }

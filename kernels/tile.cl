@@ -19,6 +19,22 @@ SHARED int farthest_tap(const struct FrameParams* f, const Tables* tables, int x
   return farthest;
 }
 
+// How far the taps of the vertical pass go to the side in the cells of a rectangle, px.
+SHARED int farthest_side(const struct FrameParams* f, const Tables* tables, int x_begin, int x_end, int y_begin,
+                         int y_end, int reach) {
+  int farthest = 0;
+#if SHEARED
+  for (int cy = y_begin / CELL; cy * CELL < y_end; ++cy) {
+    for (int cx = x_begin / CELL; cx * CELL < x_end; ++cx) {
+      const struct CellPass pass = cell_pass(f, tables, cx, cy, 1);
+      const int side = pass.shape == SHAPE_CURVED ? min(reach, MOST_SIDE) : side_of(abs(pass.shear), reach);
+      farthest = max(farthest, side);
+    }
+  }
+#endif
+  return farthest;
+}
+
 // What was seen of the light of a tile and its surroundings.
 typedef struct {
   float light[3];  // of the first pixel with a material
@@ -85,6 +101,13 @@ static inline Columns widened(Columns columns, int by_px, const Window* w) {
   return columns;
 }
 
+static inline Columns joined(Columns a, Columns b) {
+  if (b.end <= b.begin) return a;
+  if (a.end <= a.begin) return b;
+  const Columns both = {min(a.begin, b.begin), max(a.end, b.end)};
+  return both;
+}
+
 // What the horizontal pass of a tile reads, and what it writes and the vertical pass reads.
 typedef struct {
   Window across;
@@ -101,6 +124,7 @@ typedef struct {
   Columns curved_down;
   int reach_x;  // of the taps of the horizontal pass
   int reach_y;
+  int side_px;  // of the vertical pass, to the side
 } Windows;
 
 // How many rows before their turn the images are fetched: rows of a tile are too short for a processor to see them
@@ -231,7 +255,7 @@ SHARED void measure_segments(const Window* w, const struct FrameParams* f, int a
 
 static inline struct ChoiceParams choice_of(const struct FrameParams* f, const Tables* tables, int cell_x, int cell_y,
                                             int axis) {
-  struct ChoiceParams choice = {WAY_GENERAL, 0, 0, 0};
+  struct ChoiceParams choice = {.way = WAY_GENERAL};
   const struct CellPass pass = cell_pass(f, tables, cell_x, cell_y, axis);
   if (pass.shape == SHAPE_EMPTY) choice.way = WAY_EMPTY;
   if (JITTER || pass.material == 0) return choice;
@@ -240,6 +264,7 @@ static inline struct ChoiceParams choice_of(const struct FrameParams* f, const T
   const Step step = step_of(its, pass.footprint, pass.shape);
   if (step.rung < 0) return choice;
   choice.way = pass.shape;
+  choice.shear = pass.shear;
   choice.rung = its->first_rung + step.rung;
   global const struct RungParams* rung = tables->rungs + choice.rung;
   choice.weight = pass.shape == SHAPE_FLAT ? first_flat_weight(rung, step.part) : rung->first_smooth_weight;
@@ -338,7 +363,7 @@ SHARED void copy_pixels(const struct FrameParams* f, const Inputs* in, const Out
 SHARED void across_flat(const Windows* w, const Tables* tables, struct ChoiceParams choice, const LaterRow* later,
                         int x_begin, int x_end, int y) {
   const Window from = w->across;
-  const Pass pass = pass_from(&from, 0);
+  const Pass pass = pass_from(&from, 0, 0);
   const size_t plane = w->down.plane;
   global float* to = w->down.light + pixel_at(&w->down, 0, y);
   global const struct RungParams* rung = tables->rungs + choice.rung;
@@ -356,7 +381,7 @@ SHARED void across_flat(const Windows* w, const Tables* tables, struct ChoicePar
 SHARED void across_smooth(const Windows* w, const struct FrameParams* f, const Tables* tables,
                           struct ChoiceParams choice, const LaterRow* later, int x_begin, int x_end, int y) {
   const Window from = w->across;
-  const Pass pass = pass_from(&from, 0);
+  const Pass pass = pass_from(&from, 0, 0);
   const size_t plane = w->down.plane;
   global float* to = w->down.light + pixel_at(&w->down, 0, y);
   global const struct RungParams* rung = tables->rungs + choice.rung;
@@ -374,7 +399,7 @@ SHARED void across_smooth(const Windows* w, const struct FrameParams* f, const T
 SHARED void across_curved(const Windows* w, const struct FrameParams* f, const Tables* tables,
                           struct ChoiceParams choice, const LaterRow* later, int x_begin, int x_end, int y) {
   const Window from = w->across;
-  const Pass pass = pass_from(&from, 0);
+  const Pass pass = pass_from(&from, 0, 0);
   const size_t plane = w->down.plane;
   global float* to = w->down.light + pixel_at(&w->down, 0, y);
   global const struct TermParams* terms = tables->terms + tables->materials[choice.material].first_term;
@@ -400,7 +425,7 @@ SHARED void across_empty(const Windows* w, int x_begin, int x_end, int y) {
 // Any cells of one row.
 SHARED void across_any(const Windows* w, const struct FrameParams* f, const Tables* tables, const LaterRow* later,
                        int x_begin, int x_end, int y) {
-  const Pass pass = pass_from(&w->across, 0);
+  const Pass pass = pass_from(&w->across, 0, 0);
   const size_t plane = w->down.plane;
   global float* to = w->down.light + pixel_at(&w->down, 0, y);
   for (int x = x_begin; x < x_end; x += V) {
@@ -465,7 +490,7 @@ static inline void scatter_row(const Windows* w, const struct FrameParams* f, co
 SHARED void down_flat(const Windows* w, const Tables* tables, struct ChoiceParams choice, const Planes* to, int x_begin,
                       int x_end, int y_begin, int y_end) {
   const Window from = w->down;
-  const Pass pass = pass_from(&from, 1);
+  const Pass pass = pass_from(&from, 1, choice.shear);
   const Planes target = *to;
   global const struct RungParams* rung = tables->rungs + choice.rung;
   global const int* offsets = tables->offsets + rung->first_offset;
@@ -484,7 +509,7 @@ SHARED void down_flat(const Windows* w, const Tables* tables, struct ChoiceParam
 SHARED void down_smooth(const Windows* w, const struct FrameParams* f, const Tables* tables, struct ChoiceParams choice,
                         const Planes* to, int x_begin, int x_end, int y_begin, int y_end) {
   const Window from = w->down;
-  const Pass pass = pass_from(&from, 1);
+  const Pass pass = pass_from(&from, 1, choice.shear);
   const Planes target = *to;
   global const struct RungParams* rung = tables->rungs + choice.rung;
   global const int* offsets = tables->offsets + rung->first_offset;
@@ -503,7 +528,7 @@ SHARED void down_smooth(const Windows* w, const struct FrameParams* f, const Tab
 SHARED void down_curved(const Windows* w, const struct FrameParams* f, const Tables* tables, struct ChoiceParams choice,
                         const Planes* to, int x_begin, int x_end, int y_begin, int y_end) {
   const Window from = w->down;
-  const Pass pass = pass_from(&from, 1);
+  const Pass pass = pass_from(&from, 1, 0);
   global const struct TermParams* terms = tables->terms + tables->materials[choice.material].first_term;
   for (int y = y_begin; y < y_end; ++y) {
     for (int x = x_begin; x < x_end; x += V) {
@@ -518,7 +543,7 @@ SHARED void down_curved(const Windows* w, const struct FrameParams* f, const Tab
 // Any cell, down.
 SHARED void down_any(const Windows* w, const struct FrameParams* f, const Tables* tables, const Planes* to, int x_begin,
                      int x_end, int y_begin, int y_end) {
-  const Pass pass = pass_from(&w->down, 1);
+  const Pass pass = pass_from(&w->down, 1, 0);
   for (int y = y_begin; y < y_end; ++y) {
     for (int x = x_begin; x < x_end; x += V) {
       vrgb result[TERMS];
@@ -669,6 +694,8 @@ static inline Sight scatter_rows(const Windows* w, const struct FrameParams* f, 
   Columns there = nothing;
   Columns bent = nothing;
   Columns curved = nothing;
+  const Columns segments_down = widened(w->curved_down, w->side_px, down);
+  const Columns surface_down = joined(widened(w->bent_down, V, down), widened(segments_down, V, down));
   for (int y = across->y_begin; y < across->y_end; ++y) {
     if (y % CELL == 0 || y == across->y_begin) {
       there = columns_of(f, tables, w->x_begin, w->x_end, y, y + 1, 0, SHAPE_EMPTY + 1);
@@ -680,22 +707,17 @@ static inline Sight scatter_rows(const Windows* w, const struct FrameParams* f, 
       curved = widened(columns_of(f, tables, w->x_begin, w->x_end, y, y + 1, 0, SHAPE_CURVED), w->reach_x + V, across);
     }
     if (bent.begin < bent.end) {
-      Columns loaded = bent;
-      if (curved.begin < curved.end) {
-        loaded.begin = min(bent.begin, curved.begin);
-        loaded.end = max(bent.end, curved.end);
-      }
-      loaded = widened(loaded, V, across);  // slopes are taken from the next pixels, too
+      const Columns loaded = widened(joined(bent, curved), V, across);  // slopes are taken from the next pixels, too
       load_surface_row(across, f, in, tables->materials, loaded.begin, loaded.end, y);
     }
     measure_segments(across, f, 0, max(curved.begin, across->x_begin), min(curved.end, across->x_end), y);
     if (w->shape_down != SHAPE_FLAT) {
       // Slopes are taken from the next row, too.
       for (; next_surface < min(y + 2, down->y_end); ++next_surface) {
-        load_surface_row(down, f, in, tables->materials, w->bent_down.begin, w->bent_down.end, next_surface);
+        load_surface_row(down, f, in, tables->materials, surface_down.begin, surface_down.end, next_surface);
       }
       if (y >= w->y_begin && y < w->y_end) {
-        measure_segments(down, f, 1, w->curved_down.begin, w->curved_down.end, y);
+        measure_segments(down, f, 1, max(segments_down.begin, down->x_begin), min(segments_down.end, down->x_end), y);
       }
     }
 #if !JITTER
@@ -733,20 +755,22 @@ static inline int rows_mask(int rows, int frame_rows) {
 static inline Windows windows_of(const struct FrameParams* f, const Tables* tables, int x_begin, int x_end, int y_begin,
                                  int y_end, global uchar* memory, size_t across_plane, size_t down_plane) {
   const int reach_y = farthest_tap(f, tables, x_begin, x_end, y_begin, y_end, 1);
+  // A tap that leaves its axis needs the horizontal pass of the pixels that it falls on.
 #if JITTER
-  // A tap that is turned leaves its axis; the rest of the horizontal pass is that of pixels that turned taps reach.
   const int reach = max(reach_y, farthest_tap(f, tables, x_begin, x_end, y_begin, y_end, 0));
   const int turned_px = (int)fmin(ceil(reach * f->widest_turn) + 1.0f, (float)max(f->width, f->height));
+  const int side_px = turned_px;
 #else
   const int turned_px = 0;
+  const int side_px = farthest_side(f, tables, x_begin, x_end, y_begin, y_end, reach_y);
 #endif
   Windows w;
   w.own_x_begin = x_begin;
   w.own_x_end = x_end;
   w.own_y_begin = y_begin;
   w.own_y_end = y_end;
-  w.x_begin = max(x_begin - turned_px, 0) & ~(CELL - 1);
-  w.x_end = min(x_end + turned_px, f->width);
+  w.x_begin = max(x_begin - side_px, 0) & ~(CELL - 1);
+  w.x_end = min(x_end + side_px, f->width);
   w.y_begin = max(y_begin - max(reach_y, turned_px), 0);
   w.y_end = min(y_end + max(reach_y, turned_px), f->height);
   w.reach_y = reach_y;
@@ -759,8 +783,11 @@ static inline Windows windows_of(const struct FrameParams* f, const Tables* tabl
 #endif
   w.shape_across = JITTER ? SHAPE_CURVED : worst_shape(f, tables, w.x_begin, w.x_end, w.y_begin, w.y_end, 0);
   w.shape_down = JITTER ? SHAPE_CURVED : worst_shape(f, tables, x_begin, x_end, y_begin, y_end, 1);
-  w.bent_down = columns_of(f, tables, w.x_begin, w.x_end, w.y_begin, w.y_end, 1, SHAPE_SMOOTH);
-  w.curved_down = columns_of(f, tables, w.x_begin, w.x_end, w.y_begin, w.y_end, 1, SHAPE_CURVED);
+  const int from_x = JITTER ? w.x_begin : x_begin;
+  const int to_x = JITTER ? w.x_end : x_end;
+  w.bent_down = columns_of(f, tables, from_x, to_x, w.y_begin, w.y_end, 1, SHAPE_SMOOTH);
+  w.curved_down = columns_of(f, tables, from_x, to_x, w.y_begin, w.y_end, 1, SHAPE_CURVED);
+  w.side_px = side_px;
   w.reach_x = max(reach_x, margin_px);
   struct WindowParams p;
   p.x_begin = max(w.x_begin - max(reach_x, margin_px), 0) & ~(CELL - 1);

@@ -80,21 +80,28 @@ static inline void store_bytes(global uchar* p, vint value) {
 // p is aligned to V floats. A store through a vector pointer, because PoCL splits vstore16 in four.
 FORCED_INLINE void store_floats(global float* p, vfloat value) { *(global vfloat*)p = value; }
 
-// The 32 floats at p, each lane its own of them.
+// How many values a lane can pick from.
+#define PICKED 32
+
+#if V == 16 && defined(__AVX512F__)
+typedef float native_floats __attribute__((__vector_size__(64)));
+typedef int native_ints __attribute__((__vector_size__(64)));
+#elif V == 8 && defined(__AVX2__)
+typedef float native_floats __attribute__((__vector_size__(32)));
+typedef int native_ints __attribute__((__vector_size__(32)));
+#endif
+
+// Of the PICKED floats at p, each lane its own.
 FORCED_INLINE vfloat pick(global const float* p, vint index) {
 #if V == 16 && defined(__AVX512F__)
-  typedef float native_floats __attribute__((__vector_size__(64)));
-  typedef int native_ints __attribute__((__vector_size__(64)));
-  const native_floats low = __builtin_astype(*(global const float16*)p, native_floats);
-  const native_floats high = __builtin_astype(*(global const float16*)(p + 16), native_floats);
+  const native_floats low = __builtin_astype(load_floats(p), native_floats);
+  const native_floats high = __builtin_astype(load_floats(p + V), native_floats);
   return __builtin_astype(__builtin_ia32_vpermi2varps512(low, __builtin_astype(index, native_ints), high), float16);
 #elif V == 8 && defined(__AVX2__)
-  typedef float native_floats __attribute__((__vector_size__(32)));
-  typedef int native_ints __attribute__((__vector_size__(32)));
   const native_ints lane = __builtin_astype(index, native_ints);
   vfloat part[4];
   for (int i = 0; i < 4; ++i) {
-    const native_floats eight = __builtin_astype(*(global const float8*)(p + 8 * i), native_floats);
+    const native_floats eight = __builtin_astype(load_floats(p + V * i), native_floats);
     part[i] = __builtin_astype(__builtin_ia32_permvarsf256(eight, lane), float8);
   }
   const vfloat low = select(part[0], part[1], (index & 8) != 0);
@@ -108,6 +115,58 @@ FORCED_INLINE vfloat pick(global const float* p, vint index) {
   return result;
 #endif
 }
+
+// The same of bytes.
+FORCED_INLINE vint pick_bytes(global const uchar* p, vint index) {
+#if V == 16 && defined(__AVX512F__)
+  const native_ints low = __builtin_astype(load_bytes(p), native_ints);
+  const native_ints high = __builtin_astype(load_bytes(p + V), native_ints);
+  return __builtin_astype(__builtin_ia32_vpermi2vard512(low, __builtin_astype(index, native_ints), high), int16);
+#else
+  vint result;
+#define PICK_LANE(lane) LANE(result, lane) = p[LANE(index, lane)];
+  EACH_LANE(PICK_LANE)
+#undef PICK_LANE
+  return result;
+#endif
+}
+
+// Of whole numbers.
+FORCED_INLINE vint whole(vfloat value) {
+#if V == 1
+  return (int)value;
+#else
+  return JOIN(convert_int, V)(value);
+#endif
+}
+
+FORCED_INLINE vfloat as_floats(vint value) {
+#if V == 1
+  return (float)value;
+#else
+  return JOIN(convert_float, V)(value);
+#endif
+}
+
+#if V == 1
+static inline int lowest_lane(vint v) { return v; }
+static inline int highest_lane(vint v) { return v; }
+#else
+static inline int lowest_lane(vint v) {
+#if V == 16
+  const int8 eight = min(v.lo, v.hi);
+  const int4 four = min(eight.lo, eight.hi);
+#elif V == 8
+  const int4 four = min(v.lo, v.hi);
+#else
+  const int4 four = v;
+#endif
+  const int2 two = min(four.lo, four.hi);
+  return min(two.x, two.y);
+}
+
+static inline int highest_lane(vint v) { return -lowest_lane(-v); }
+#endif
 
 static inline vfloat lane_numbers(void) {
 #if V == 1

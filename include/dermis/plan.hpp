@@ -52,8 +52,12 @@ enum class BadPixels {
 struct Options {
   Method method = Method::separable;
   TapsDesign taps = {.rank = 2};  ///< of every material that does not have its own
-  double jitter = 0;              ///< share of the kernel radius within which taps are rotated per pixel, 0..1
-  std::uint32_t seed = 0;         ///< of the rotation
+  /// The vertical pass crosses the horizontal one at a right angle on the surface instead of on the screen: see Taps.
+  /// About half the error where a surface is tilted both ways, for up to twice the time of the cells that are; it
+  /// counts only if there is depth, and no jitter.
+  bool sheared = true;
+  double jitter = 0;       ///< share of the kernel radius within which taps are rotated per pixel, 0..1
+  std::uint32_t seed = 0;  ///< of the rotation
   Lighting lighting = Lighting::raw;
   double albedo_mix = 0;  ///< m in 0..1: albedo^m is put in before the passes, albedo^(1-m) after
   BadPixels bad_pixels = BadPixels::keep;

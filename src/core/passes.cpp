@@ -90,6 +90,7 @@ RunSizes run_sizes(const Plan::State& plan, int width, int height) {
   }
   sizes.terms = plan.terms_per_material;
   sizes.turns_taps = options.jitter > 0;
+  sizes.side_px = plan.is_sheared ? MOST_SIDE : 0;
   sizes.farthest_px = plan.farthest_px;
   sizes.has_pixel_width = plan.has_pixel_width;
   sizes.exact = options.method == Method::exact;

@@ -76,7 +76,8 @@ std::string common_options(const Plan::State& state, int materials) {
   return "-cl-std=CL1.2" + define("MATERIALS", materials) + define("HAS_DEPTH", frames.depth ? 1 : 0) +
          define("HAS_MATERIAL", frames.material ? 1 : 0) + define("HAS_MASK", frames.mask ? 1 : 0) +
          define("HAS_ALBEDO", frames.albedo ? 1 : 0) + define("PIXEL_WIDTH", state.has_pixel_width ? 1 : 0) +
-         define("JITTER", state.options.jitter > 0 ? 1 : 0) + bounds.str();
+         define("JITTER", state.options.jitter > 0 ? 1 : 0) + define("SHEARED", state.is_sheared ? 1 : 0) +
+         bounds.str();
 }
 
 int vector_width(const Plan::State& state) { return state.item_is_pixel ? 1 : state.device.info().vector_width; }
@@ -192,6 +193,7 @@ Plan::Plan(const Device& device, std::vector<Material> materials, const FrameDes
   state->description = frames;
   state->options = options;
   state->has_pixel_width = frames.mask || follows_albedo;
+  state->is_sheared = frames.depth && options.sheared && options.jitter == 0;
   state->item_is_pixel = device.info().type == "GPU";
   state->tiled = !state->item_is_pixel && options.method == Method::separable;
   state->build_options = common_options(*state, static_cast<int>(materials.size()));

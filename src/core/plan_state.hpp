@@ -30,6 +30,7 @@ struct Plan::State {
   int terms_per_material = 1;
   int farthest_px = 0;           ///< no tap lies farther away
   bool has_pixel_width = false;  ///< a mask or an albedo scales the profile of each pixel
+  bool is_sheared = false;       ///< taps of the vertical pass lie along the shear of the surface
   bool item_is_pixel = false;    ///< a work-item computes one pixel (GPUs), else runs of pixels
   bool tiled = false;            ///< the passes run tile by tile
   mutable RunMemoryPool memories;

@@ -33,7 +33,8 @@ std::size_t RunSizes::across_plane() const {
   if (workers == 0) return frame_plane();
   // Taps that are turned need the surroundings of the surroundings.
   const std::size_t reach = static_cast<std::size_t>(farthest_px) * (turns_taps ? 4 : 1) + (turns_taps ? 4 : 0);
-  const std::size_t columns = std::min<std::size_t>(stride(), tile_width + 2 * (reach + CELL) + 2 * PADDING);
+  const std::size_t columns =
+      std::min<std::size_t>(stride(), tile_width + 2 * (reach + round_up(side_px, CELL) + CELL) + 2 * PADDING);
   const std::size_t rows = turns_taps ? std::bit_ceil(std::min<std::size_t>(height, tile_height + 2 * reach)) : 1;
   return static_cast<std::size_t>(round_up(static_cast<int>(columns), alignment)) * rows;
 }
@@ -41,7 +42,7 @@ std::size_t RunSizes::across_plane() const {
 std::size_t RunSizes::down_plane() const {
   if (workers == 0) return 0;
   const std::size_t reach = static_cast<std::size_t>(farthest_px) * (turns_taps ? 2 : 1) + 2;
-  const std::size_t turned = turns_taps ? reach + CELL : 0;
+  const std::size_t turned = turns_taps ? reach + CELL : round_up(side_px, CELL);
   const std::size_t columns =
       std::min<std::size_t>(stride(), round_up(tile_width, CELL) + 2 * turned + 2 * PADDING) + CELL;
   // Without turned taps a row is not needed any more when the vertical pass is beyond it.

@@ -20,6 +20,7 @@ struct RunSizes {
   int workers;                         ///< work-items that take tiles; 0 if the window is the frame
   int terms;                           ///< images of light between the passes
   int farthest_px;                     ///< no tap is farther
+  int side_px;                         ///< taps of the vertical pass that are not turned lie no more columns away
   bool has_pixel_width, turns_taps;
   bool exact;
 

@@ -1,5 +1,6 @@
 #include "oracle/cell.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 
@@ -11,10 +12,8 @@ namespace {
 
 int cells_over(int size_px) { return (size_px + cell_px - 1) / cell_px; }
 
-using Vector = std::array<Bounded, 3>;
-
 /// Two more roundings cover any order of the sum, and factors taken out of it.
-Bounded squared_length(const Vector& v) { return rounded(v[0] * v[0] + v[1] * v[1] + v[2] * v[2], 2); }
+Bounded squared_length(const Tangent& v) { return rounded(v[0] * v[0] + v[1] * v[1] + v[2] * v[2], 2); }
 
 }  // namespace
 
@@ -74,18 +73,22 @@ void Cells::add_pixel(Cell& cell, int x, int y) const {
   }
 }
 
-/// The cells of a row or a column within reach.
+/// The cells within reach.
 struct Cells::Surroundings {
   Range depth_mm;
   std::array<Range, 2> step_mm;
   std::array<int, 2> size_px;  ///< columns and rows of pixels that lie in the frame
 };
 
-Cells::Surroundings Cells::surroundings(Axis axis, int column, int row, int reach_cells) const {
+Cells::Surroundings Cells::surroundings(Axis axis, int column, int row, const View& view) const {
   std::array<int, 2> first{column, row};
   std::array<int, 2> last{column, row};
-  first[axis] = std::max(first[axis] - reach_cells, 0);
-  last[axis] = std::min(last[axis] + reach_cells, (axis == horizontal ? columns_ : rows_) - 1);
+  const std::array<int, 2> frame_cells{columns_, rows_};
+  for (const Axis i : {horizontal, vertical}) {
+    const int reach_cells = i == axis ? view.along_cells : view.side_cells;
+    first[i] = std::max(first[i] - reach_cells, 0);
+    last[i] = std::min(last[i] + reach_cells, frame_cells[i] - 1);
+  }
   Surroundings all{};
   for (int j = first[vertical]; j <= last[vertical]; ++j) {
     for (int i = first[horizontal]; i <= last[horizontal]; ++i) {
@@ -115,29 +118,50 @@ struct Cells::Variation {
   Bounded squared_length_varying;  ///< of dT
 };
 
-Cells::Variation Cells::variation(Axis axis, int column, int row, const Range& depth_mm, const Range& step_mm) const {
-  const View& view = surface_.view();
+Cells::Variation Cells::variation(Axis axis, int column, int row, int shear, const Range& depth_mm,
+                                  const std::array<Range, 2>& step_mm) const {
+  const oracle::View& view = surface_.view();
   const std::array<int, 2> corner_px{cell_px * column, cell_px * row};
-  const Bounded step = step_mm.middle();
-  const Bounded varying_step = step_mm.half_range();
-  Vector change;   // T
-  Vector varying;  // dT
+  const Bounded side = exact(shear / 4096.0);
+  const Range& along_mm = step_mm[axis];
+  const Range& across_mm = step_mm[1 - axis];
+  const Bounded step = along_mm.middle() + side * across_mm.middle();
+  const Bounded varying_step = along_mm.half_range() + absolute(side) * across_mm.half_range();
+  Tangent change;   // T
+  Tangent varying;  // dT
   for (const Axis i : {horizontal, vertical}) {
     const Bounded ray = view.ray(i, corner_px[i] + cell_px / 2);
-    change[i] = ray * step;
-    varying[i] = absolute(ray) * varying_step;
+    const Bounded pixels = i == axis ? exact(1) : side;
+    change[i] = ray * step + pixels * view.size_mm(i, depth_mm.middle());
+    varying[i] = absolute(ray) * varying_step + absolute(pixels) * view.growth_mm(i, depth_mm.half_range());
   }
-  change[axis] = change[axis] + view.size_mm(axis, depth_mm.middle());
-  varying[axis] = varying[axis] + view.growth_mm(axis, depth_mm.half_range());
   change[2] = step;
   varying[2] = varying_step;
   return {squared_length(change), squared_length(varying)};
 }
 
-void Cells::add_kinds(Axis axis, int column, int row, int reach_cells, std::vector<CellKind>& kinds) const {
+/// In the middle of a cell.
+ShearChoice Cells::shear(int column, int row) const {
+  if (!surface_.is_sheared()) return {};
   const Cell& cell = at(column, row);
-  const Surroundings near = surroundings(axis, column, row, reach_cells);
-  const Variation within_reach = variation(axis, column, row, near.depth_mm, near.step_mm[axis]);
+  const oracle::View& view = surface_.view();
+  const std::array<int, 2> corner_px{cell_px * column, cell_px * row};
+  std::array<Tangent, 2> tangents;
+  for (const Axis axis : {horizontal, vertical}) {
+    const Bounded step = cell.step_mm[axis].middle();
+    for (const Axis i : {horizontal, vertical}) {
+      tangents[axis][i] = view.ray(i, corner_px[i] + cell_px / 2) * step;
+      if (i == axis) tangents[axis][i] = tangents[axis][i] + view.size_mm(i, cell.depth_mm.middle());
+    }
+    tangents[axis][2] = step;
+  }
+  return whole_shear(shear_between(tangents[horizontal], tangents[vertical]));
+}
+
+void Cells::add_kinds(Axis axis, int column, int row, const View& view, std::vector<CellKind>& kinds) const {
+  const Cell& cell = at(column, row);
+  const Surroundings near = surroundings(axis, column, row, view);
+  const Variation within_reach = variation(axis, column, row, view.shear, near.depth_mm, near.step_mm);
   const Bounded length = square_root(within_reach.squared_length);
   Bounded largest_range = length;
   for (const Axis i : {horizontal, vertical}) {
@@ -155,15 +179,17 @@ void Cells::add_kinds(Axis axis, int column, int row, int reach_cells, std::vect
   const auto add = [&](Shape shape) {
     switch (shape) {
       case Shape::flat:
-        kinds.push_back({shape, exact(1) / length});
+        kinds.push_back({shape, exact(1) / length, view.shear});
         break;
       case Shape::smooth:
         kinds.push_back(
             {shape,
-             exact(1) / square_root(variation(axis, column, row, cell.depth_mm, cell.step_mm[axis]).squared_length)});
+             exact(1) /
+                 square_root(variation(axis, column, row, view.shear, cell.depth_mm, cell.step_mm).squared_length),
+             view.shear});
         break;
       case Shape::curved:
-        kinds.push_back({shape, cell.footprint[axis].bounded()});
+        kinds.push_back({shape, cell.footprint[axis].bounded(), 0});
     }
   };
   const Shape nominal = flat.yes ? Shape::flat : smooth.yes ? Shape::smooth : Shape::curved;
@@ -198,18 +224,30 @@ Cells::Reach Cells::reach(Axis axis, const Cell& cell) const {
   return reach;
 }
 
+/// What lies within r pixels lies in the ceil(r / 16) cells to either side.
+std::vector<Cells::View> Cells::views(Axis axis, int column, int row) const {
+  const Reach reach_px = reach(axis, at(column, row));
+  const ShearChoice shears = axis == vertical ? shear(column, row) : ShearChoice{};
+  const int frame_px = std::max(surface_.width(), surface_.height());
+  std::vector<View> all;
+  const auto add = [&](int along_px, int shear) {
+    along_px = std::min(along_px, frame_px);
+    const int side = side_px(std::abs(shear), along_px);
+    const View view{cells_over(along_px), cells_over(side), side == 0 ? 0 : shear};
+    if (std::find(all.begin(), all.end(), view) == all.end()) all.push_back(view);
+  };
+  add(reach_px.nominal_px, shears.nominal);
+  for (int along_px = reach_px.least_px; along_px <= reach_px.most_px; ++along_px) {
+    for (int shear = shears.lowest; shear <= shears.highest; ++shear) add(along_px, shear);
+  }
+  return all;
+}
+
 std::vector<CellKind> Cells::kinds(Axis axis, int column, int row) const {
   const Cell& cell = at(column, row);
-  if (!may_be_flat_) return {{Shape::curved, cell.footprint[axis].bounded()}};
-  // What lies within r pixels lies in the ceil(r / 16) cells to either side.
-  const auto cells_within = [&](int reach_px) { return std::min(cells_over(reach_px), std::max(columns_, rows_)); };
-  const Reach reach_px = reach(axis, cell);
+  if (!may_be_flat_) return {{Shape::curved, cell.footprint[axis].bounded(), 0}};
   std::vector<CellKind> kinds;
-  const int nominal = cells_within(reach_px.nominal_px);
-  add_kinds(axis, column, row, nominal, kinds);
-  for (int reach = cells_within(reach_px.least_px); reach <= cells_within(reach_px.most_px); ++reach) {
-    if (reach != nominal) add_kinds(axis, column, row, reach, kinds);
-  }
+  for (const View& view : views(axis, column, row)) add_kinds(axis, column, row, view, kinds);
   return kinds;
 }
 

@@ -23,6 +23,7 @@ enum class Shape { flat, smooth, curved };
 struct CellKind {
   Shape shape;
   Bounded footprint;  ///< px per mm: the largest of the pixels times k, or unless curved that of the tilted surface
+  int shear;          ///< of the vertical pass, in 1/4096; 0 if curved
 };
 
 class Cells {
@@ -97,15 +98,27 @@ class Cells {
     bool unsure;
   };
 
+  /// What is looked at around a cell, and along which shear.
+  struct View {
+    int along_cells;  ///< to either side along the pass
+    int side_cells;   ///< across it
+    int shear;        ///< in 1/4096
+
+    bool operator==(const View&) const = default;
+  };
+
   struct Surroundings;
 
   void add_pixel(Cell& cell, int x, int y) const;
   Reach reach(Axis axis, const Cell& cell) const;
   const Cell& at(int column, int row) const { return cells_[static_cast<std::size_t>(row) * columns_ + column]; }
-  Surroundings surroundings(Axis axis, int column, int row, int reach_cells) const;
+  Surroundings surroundings(Axis axis, int column, int row, const View& view) const;
   struct Variation;
-  Variation variation(Axis axis, int column, int row, const Range& depth_mm, const Range& step_mm) const;
-  void add_kinds(Axis axis, int column, int row, int reach_cells, std::vector<CellKind>& kinds) const;
+  Variation variation(Axis axis, int column, int row, int shear, const Range& depth_mm,
+                      const std::array<Range, 2>& step_mm) const;
+  ShearChoice shear(int column, int row) const;
+  std::vector<View> views(Axis axis, int column, int row) const;
+  void add_kinds(Axis axis, int column, int row, const View& view, std::vector<CellKind>& kinds) const;
   static Decision is_at_most(Bounded a, Bounded b);
   static Decision both(Decision a, Decision b);
 

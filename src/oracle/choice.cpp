@@ -45,7 +45,8 @@ std::vector<Way> ways(std::span<const CellKind> kinds, const Taps& taps, double 
   for (const CellKind& kind : kinds) {
     const Choice step = step_choice(kind, taps);
     const auto way = [&](int index, int rotated) {
-      return Way{kind.shape, kind.shape == Shape::flat && index >= 0 ? index % rung_parts : 0, rung_of(index), rotated};
+      return Way{kind.shape, kind.shape == Shape::flat && index >= 0 ? index % rung_parts : 0, rung_of(index), rotated,
+                 kind.shear};
     };
     add(way(step.nominal, rotated_choice(rung_of(step.nominal), taps, jitter).nominal));
     for (int index = step.lowest; index <= step.highest; ++index) {

@@ -33,6 +33,9 @@ void admit(Outcome& outcome, const Outcome& other) {
   }
 }
 
+/// The first one, with a bound that admits the other one.
+Bounded including(Bounded a, Bounded b) { return {a.value, std::max(a.error, std::abs(b.value - a.value) + b.error)}; }
+
 /// The sum over terms of scale times value, added up in any order.
 Bounded scaled_sum(const Outcome& values, std::span<const Term> terms, int c) {
   if (terms.size() == 1) return exact(terms[0].scale[c]) * values[0][c];
@@ -74,7 +77,11 @@ class Pass {
   Outcome with_taps(int x, int y, const Way& way);
   void add_center(int x, int y, const TapWeights& weights);
   void add(std::size_t term, int c, const WeightParts& parts, int x, int y);
-  void add_tap(int x, int y, PixelOffset offset, int side, const TapWeights& weights, std::size_t pair);
+  std::vector<PixelOffset> sheared(int x, int y, int offset_px, const Way& way) const;
+  struct Reading;
+  const SurfacePixel* tap_at(int x, int y, PixelOffset offset) const;
+  void add_tap(int x, int y, std::span<const PixelOffset> offsets, int side, const TapWeights& weights,
+               std::size_t pair);
   Outcome finished(const Outcome& values, std::span<const Term> terms) const;
 
   Axis axis_;
@@ -155,10 +162,17 @@ Outcome Pass::with_taps(int x, int y, const Way& way) {
   add_center(x, y, weights);
   const Direction turned = Direction::turned(axis_, x, y, options_.seed, camera_);
   for (std::size_t i = 0; i < rung.offsets_px.size(); ++i) {
-    PixelOffset offset{0, 0};
-    offset[axis_] = rung.offsets_px[i];
-    if (static_cast<int>(i) < way.rotated) offset = turned.offset(rung.offsets_px[i]);
-    for (const int side : {1, -1}) add_tap(x, y, offset, side, weights, i);
+    for (const int side : {1, -1}) {
+      const int offset_px = side * rung.offsets_px[i];
+      if (static_cast<int>(i) < way.rotated) {
+        const auto [dx, dy] = turned.offset(rung.offsets_px[i]);
+        add_tap(x, y, {{{side * dx, side * dy}}}, side, weights, i);
+      } else if (axis_ == horizontal) {
+        add_tap(x, y, {{{offset_px, 0}}}, side, weights, i);
+      } else {
+        add_tap(x, y, sheared(x, y, offset_px, way), side, weights, i);
+      }
+    }
   }
   std::array<Bounded, 3> limit{exact(1), exact(1), exact(1)};  // of differences, on a curved surface
   if (way.shape == Shape::curved) {
@@ -194,15 +208,60 @@ void Pass::add(std::size_t term, int c, const WeightParts& parts, int x, int y) 
   }
 }
 
-void Pass::add_tap(int x, int y, PixelOffset offset, int side, const TapWeights& weights, std::size_t pair) {
-  const int tap_x = x + side * offset[0];
-  const int tap_y = y + side * offset[1];
-  if (!surface_.shows(surface_.at(x, y).material, tap_x, tap_y)) return;
+/// What a tap may fall on.
+struct Pass::Reading {
+  bool is_there;
+  TapWeights::Place place;
+  int x, y;
+};
+
+/// Where a tap of the vertical pass may lie: the oracle's place first.
+std::vector<PixelOffset> Pass::sheared(int x, int y, int offset_px, const Way& way) const {
+  if (way.shape != Shape::curved) return {{side_px(way.shear, offset_px), offset_px}};
+  const ShearChoice shear = surface_.shear(x, y);
+  std::vector<PixelOffset> offsets{{side_px(shear.nominal, offset_px), offset_px}};
+  for (int may_be = shear.lowest; may_be <= shear.highest; ++may_be) {
+    const PixelOffset offset{side_px(may_be, offset_px), offset_px};
+    if (std::find(offsets.begin(), offsets.end(), offset) == offsets.end()) offsets.push_back(offset);
+  }
+  return offsets;
+}
+
+/// What a tap reads, if it is of the pixel's material and gives light.
+const SurfacePixel* Pass::tap_at(int x, int y, PixelOffset offset) const {
+  const int tap_x = x + offset[0];
+  const int tap_y = y + offset[1];
+  if (!surface_.shows(surface_.at(x, y).material, tap_x, tap_y)) return nullptr;
   const SurfacePixel& tap = surface_.at(tap_x, tap_y);
-  if (!tap.gives_light()) return;
-  const TapWeights::Place place = weights.place(tap, side);
+  return tap.gives_light() ? &tap : nullptr;
+}
+
+void Pass::add_tap(int x, int y, std::span<const PixelOffset> offsets, int side, const TapWeights& weights,
+                   std::size_t pair) {
+  std::vector<Reading> readings;
+  for (const PixelOffset offset : offsets) {
+    const SurfacePixel* tap = tap_at(x, y, offset);
+    readings.push_back({tap != nullptr, tap != nullptr ? weights.place(*tap, side) : TapWeights::Place{}, x + offset[0],
+                        y + offset[1]});
+  }
   for (std::size_t t = 0; t < sums_.size(); ++t) {
-    for (int c = 0; c < 3; ++c) add(t, c, weights.tap(place, pair, t, c), tap_x, tap_y);
+    for (int c = 0; c < 3; ++c) {
+      WeightParts parts{};
+      Bounded light;
+      bool has_light = false;
+      for (const Reading& reading : readings) {
+        const WeightParts its = reading.is_there ? weights.tap(reading.place, pair, t, c) : WeightParts{};
+        const bool is_first = &reading == &readings.front();
+        for (std::size_t i = 0; i < parts.size(); ++i) parts[i] = is_first ? its[i] : including(parts[i], its[i]);
+        if (!reading.is_there) continue;
+        const Bounded its_light = inputs_[t].at(reading.x, reading.y, c);
+        light = has_light ? including(light, its_light) : its_light;
+        has_light = true;
+      }
+      for (const Bounded& part : parts) {
+        if (has_light && !is_exactly(part, 0)) sums_[t][c].add(part, light);
+      }
+    }
   }
 }
 
@@ -229,7 +288,7 @@ std::size_t most_terms(std::span<const Material> materials) {
 
 Reference separable(const Frame& frame, std::span<const Material> materials, const Options& options) {
   const FrameImages images = read_images(frame);
-  const Surface surface(frame, images, materials);
+  const Surface surface(frame, images, materials, options.sheared && options.jitter == 0);
   const Cells cells(surface, materials, may_be_flat(images, materials, options));
   const Light light(images, options);
   const BoundedPicture x = light.filtered();

@@ -91,8 +91,11 @@ void decide_wide(SurfacePixel& pixel, const Taps& taps) {
 
 }  // namespace
 
-Surface::Surface(const Frame& frame, const FrameImages& images, std::span<const Material> materials)
-    : width_(frame.width), height_(frame.height), view_(frame.camera, frame.mm_per_unit) {
+Surface::Surface(const Frame& frame, const FrameImages& images, std::span<const Material> materials, bool sheared)
+    : sheared_(sheared && is_there(images.depth)),
+      width_(frame.width),
+      height_(frame.height),
+      view_(frame.camera, frame.mm_per_unit) {
   check(images, materials);
   pixels_.resize(static_cast<std::size_t>(width_) * height_);
   for (int y = 0; y < height_; ++y) {
@@ -149,23 +152,36 @@ Bounded Surface::depth_slope(int x, int y, Axis axis) const {
   return {same_sign ? smaller.value : 0, std::max(forward.error, backward.error)};
 }
 
+/// How the difference of depth along one axis changes along the other one; 0 without both pixels on the diagonal.
+Bounded Surface::cross_step(int x, int y, const DepthSteps& along_x, const DepthSteps& along_y) const {
+  const SurfacePixel& pixel = at(x, y);
+  if (!shows(pixel.material, x - 1, y - 1) || !shows(pixel.material, x + 1, y + 1)) return exact(0);
+  const Bounded z = pixel.position_mm[2];
+  const Bounded diagonal = (at(x + 1, y + 1).position_mm[2] - z) - (z - at(x - 1, y - 1).position_mm[2]);
+  return exact(0.5) * (diagonal - (along_x.forward - along_x.backward) - (along_y.forward - along_y.backward));
+}
+
 // T = (size + ray g, ray' g, g) along x; its change per pixel is (2 size' g + ray h, ray' h, h), where g and h are the
-// first and the second difference of depth, and size' = the change of the ray per pixel.
-Bend Surface::bend(int x, int y, Axis axis, float footprint) const {
+// first and the second difference of depth, and size' = the change of the ray per pixel. Of a shear s, which adds s
+// columns to each row, g and h are those along (s, 1), and T has s times what it would have along x too.
+Bend Surface::bend(int x, int y, Axis axis, int shear, float footprint) const {
   const SurfacePixel& pixel = at(x, y);
   const DepthSteps steps = depth_steps(x, y, axis);
-  const Bounded g = exact(0.5) * (steps.forward + steps.backward);
-  const Bounded h = steps.forward - steps.backward;
+  Bounded g = exact(0.5) * (steps.forward + steps.backward);
+  Bounded h = steps.forward - steps.backward;
+  const Bounded side = exact(axis == vertical ? shear / 4096.0 : 0);
+  if (side.value != 0) {
+    const DepthSteps across = depth_steps(x, y, horizontal);
+    g = g + side * (exact(0.5) * (across.forward + across.backward));
+    h = h + side * (side * (across.forward - across.backward) + exact(2) * cross_step(x, y, across, steps));
+  }
   Bounded length2 = g * g;
   Bounded growth = g * h;
   for (const Axis i : {horizontal, vertical}) {
     const Bounded ray = view_.is_perspective() ? pixel.position_mm[i] / pixel.position_mm[2] : exact(0);
-    Bounded change = ray * g;
-    Bounded change_of_change = ray * h;
-    if (i == axis) {
-      change = change + view_.size_mm(i, pixel.position_mm[2]);
-      change_of_change = change_of_change + exact(2) * view_.growth_mm(i, g);
-    }
+    const Bounded pixels = i == axis ? exact(1) : side;
+    const Bounded change = ray * g + pixels * view_.size_mm(i, pixel.position_mm[2]);
+    const Bounded change_of_change = ray * h + exact(2) * pixels * view_.growth_mm(i, g);
     length2 = length2 + change * change;
     growth = growth + change * change_of_change;
   }
@@ -174,15 +190,32 @@ Bend Surface::bend(int x, int y, Axis axis, float footprint) const {
 }
 
 // The change of position with one pixel: the pixel's size along the axis, and the ray's run over the change of depth.
-Bounded Surface::segment(int x, int y, Axis axis) const {
+Tangent Surface::tangent(int x, int y, Axis axis) const {
   const SurfacePixel& pixel = at(x, y);
-  const Bounded slope = depth_slope(x, y, axis);
-  Bounded sum = slope * slope;
+  Tangent change;
+  change[2] = depth_slope(x, y, axis);
   for (const Axis i : {horizontal, vertical}) {
     const Bounded ray = view_.is_perspective() ? pixel.position_mm[i] / pixel.position_mm[2] : exact(0);
-    const Bounded change = i == axis ? ray * slope + view_.size_mm(i, pixel.position_mm[2]) : ray * slope;
-    sum = sum + change * change;
+    change[i] = ray * change[2];
+    if (i == axis) change[i] = change[i] + view_.size_mm(i, pixel.position_mm[2]);
   }
+  return change;
+}
+
+ShearChoice Surface::shear(int x, int y) const {
+  if (!sheared_) return {};
+  return whole_shear(shear_between(tangent(x, y, horizontal), tangent(x, y, vertical)));
+}
+
+Bounded Surface::segment(int x, int y, Axis axis) const {
+  Tangent along = tangent(x, y, axis);
+  if (axis == vertical && sheared_) {
+    const Tangent across = tangent(x, y, horizontal);
+    const Bounded shear = shear_between(across, along);
+    for (int i = 0; i < 3; ++i) along[i] = along[i] + shear * across[i];
+  }
+  Bounded sum = exact(0);
+  for (const Bounded part : along) sum = sum + part * part;
   return square_root(sum);
 }
 

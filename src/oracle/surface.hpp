@@ -9,6 +9,7 @@
 #include "dermis/oracle/reference.hpp"
 #include "oracle/frame_images.hpp"
 #include "oracle/rounding.hpp"
+#include "oracle/shear.hpp"
 #include "oracle/view.hpp"
 
 namespace dermis::oracle {
@@ -22,7 +23,7 @@ struct SurfacePixel {
   std::array<Bounded, 3> position_mm{};
   std::array<Bounded, 2> footprint{};            ///< px per mm along x and y
   std::array<Bounded, 3> width_factor{};         ///< k: the profile is R(r / k) / k^2
-  std::array<Bounded, 2> segment_mm{};           ///< length of surface that the pixel spans along x and y
+  std::array<Bounded, 2> segment_mm{};           ///< length of surface that the pixel spans along either pass
   std::array<Bounded, 2> effective_footprint{};  ///< footprint times the widest channel's k, px per mm
 
   bool gives_light() const { return material >= 0 && !bad; }
@@ -39,13 +40,15 @@ struct Bend {
 
 class Surface {
  public:
+  /// `sheared`: the vertical pass runs along the shear of each pixel, not along y.
   /// Throws Error(usage) if there is no material, or several and no material ids, Error(role_missing) if a width
   /// follows an albedo that is not there.
-  Surface(const Frame& frame, const FrameImages& images, std::span<const Material> materials);
+  Surface(const Frame& frame, const FrameImages& images, std::span<const Material> materials, bool sheared);
 
   int width() const { return width_; }
   int height() const { return height_; }
   const View& view() const { return view_; }
+  bool is_sheared() const { return sheared_; }
 
   const SurfacePixel& at(int x, int y) const { return pixels_[static_cast<std::size_t>(y) * width_ + x]; }
 
@@ -58,7 +61,11 @@ class Surface {
   /// material, 0 if they differ in sign.
   Bounded depth_slope(int x, int y, Axis axis) const;
 
-  Bend bend(int x, int y, Axis axis, float footprint) const;
+  /// The shear of a pixel.
+  ShearChoice shear(int x, int y) const;
+
+  /// `shear`: of the vertical pass, in 1/4096.
+  Bend bend(int x, int y, Axis axis, int shear, float footprint) const;
 
   /// 1 channel: 1 where a pixel takes light.
   Picture touched() const;
@@ -66,8 +73,11 @@ class Surface {
  private:
   struct DepthSteps;
   DepthSteps depth_steps(int x, int y, Axis axis) const;
+  Bounded cross_step(int x, int y, const DepthSteps& along_x, const DepthSteps& along_y) const;
+  Tangent tangent(int x, int y, Axis axis) const;
   Bounded segment(int x, int y, Axis axis) const;
 
+  bool sheared_;
   int width_;
   int height_;
   View view_;

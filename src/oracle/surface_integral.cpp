@@ -195,7 +195,7 @@ class Integral {
 
 Reference surface_integral(const Frame& frame, std::span<const Material> materials, const Options& options, int finer) {
   const FrameImages images = read_images(frame);
-  const Surface surface(frame, images, materials);
+  const Surface surface(frame, images, materials, false);
   const Light light(images, options);
   BoundedPicture scattered = light.filtered();
   const Picture x = scattered.value;

@@ -33,7 +33,7 @@ constexpr std::size_t middle_part = 4;
 TapWeights::TapWeights(Axis axis, const Surface& surface, int x, int y, const Taps& taps, const Way& way)
     : axis_(axis), pixel_(surface.at(x, y)), taps_(taps), rung_(taps.rungs[way.rung]), way_(way) {
   if (way.shape != Shape::smooth) return;
-  bend_ = surface.bend(x, y, axis, rung_.footprint);
+  bend_ = surface.bend(x, y, axis, way.shear, rung_.footprint);
   bend_.stretch = held_within(bend_.stretch, exact(Taps::most_stretch));
   if (rung_.offsets_px.empty()) return;
   bend_.skew = held_within(bend_.skew, exact(Taps::most_skew) / exact(rung_.offsets_px.back()));

@@ -21,6 +21,7 @@ struct FloatCell {
   bool smooth = false;
   float footprint = 0;  ///< if neither
   float change_mm = 0;  ///< of position per pixel, if either
+  int shear = 0;        ///< if either
 };
 
 /// Eighths of rungs; none below half a pixel.
@@ -36,7 +37,12 @@ class FloatCells {
  public:
   FloatCells(int axis, const MadeFrame& made, std::span<const dermis::oracle::Material> materials,
              const dermis::Options& options, const std::vector<FloatPixel>& pixels, bool fused)
-      : axis_(axis), made_(made), materials_(materials), pixels_(pixels), fused_(fused) {
+      : axis_(axis),
+        made_(made),
+        materials_(materials),
+        pixels_(pixels),
+        fused_(fused),
+        sheared_(axis == 1 && is_sheared(made, options)) {
     columns_ = (made.width + 15) / 16;
     bool may_be_flat = made.mask.empty() && options.jitter == 0;
     for (const auto& material : materials) may_be_flat = may_be_flat && !material.width_follows_albedo;
@@ -112,29 +118,48 @@ class FloatCells {
     return all;
   }
 
-  /// Squared, of the change of position per pixel, and by how much it varies.
-  std::array<float, 2> squared_change(const Steepness& its, const int* corner) const {
+  /// Along the ray through the middle of a cell.
+  float ray(int i, const int* corner) const {
     const dermis::Camera& camera = made_.camera;
-    const bool perspective = camera.projection == dermis::Camera::Projection::perspective;
-    const float scale[2] = {static_cast<float>(camera.scale_x), static_cast<float>(camera.scale_y)};
-    const float center[2] = {static_cast<float>(camera.center_x), static_cast<float>(camera.center_y)};
-    const float step = its.steps[axis_].middle();
-    const float varying = its.steps[axis_].half();
+    if (camera.projection != dermis::Camera::Projection::perspective) return 0;
+    const auto scale = static_cast<float>(i == 0 ? camera.scale_x : camera.scale_y);
+    const auto center = static_cast<float>(i == 0 ? camera.center_x : camera.center_y);
+    return (static_cast<float>(corner[i] + 8) - center) / scale;
+  }
+
+  /// Of a pixel at that depth; or what a part of the depth adds to it.
+  float size_mm(int i, float z, bool is_part) const {
+    const bool perspective = made_.camera.projection == dermis::Camera::Projection::perspective;
+    const auto scale = static_cast<float>(i == 0 ? made_.camera.scale_x : made_.camera.scale_y);
+    if (!perspective && is_part) return 0;
+    return (perspective ? z : static_cast<float>(made_.mm_per_unit)) / scale;
+  }
+
+  /// Squared, of the change of position per pixel, and by how much it varies.
+  std::array<float, 2> squared_change(const Steepness& its, const int* corner, float side) const {
+    const float step = multiply_add(side, its.steps[1 - axis_].middle(), its.steps[axis_].middle());
+    const float varying = multiply_add(std::fabs(side), its.steps[1 - axis_].half(), its.steps[axis_].half());
     float change2 = step * step;
     float varying2 = varying * varying;
     for (int i = 0; i < 2; ++i) {
-      const float ray = perspective ? (static_cast<float>(corner[i] + 8) - center[i]) / scale[i] : 0;
-      float along = ray * step;
-      float vague = std::fabs(ray) * varying;
-      if (i == axis_) {
-        const float mm = perspective ? its.z.middle() : static_cast<float>(made_.mm_per_unit);
-        along += mm / scale[i];
-        if (perspective) vague += its.z.half() / scale[i];
-      }
+      const float columns = i == axis_ ? 1 : side;
+      const float along = multiply_add(columns, size_mm(i, its.z.middle(), false), ray(i, corner) * step);
+      const float vague = std::fabs(ray(i, corner)) * varying + std::fabs(columns) * size_mm(i, its.z.half(), true);
       change2 = multiply_add(along, along, change2);
       varying2 = multiply_add(vague, vague, varying2);
     }
     return {change2, varying2};
+  }
+
+  int shear_of(const Steepness& its, const int* corner) const {
+    std::array<std::array<float, 3>, 2> tangents{};
+    for (int axis = 0; axis < 2; ++axis) {
+      const float step = its.steps[axis].middle();
+      for (int i = 0; i < 2; ++i) tangents[axis][i] = ray(i, corner) * step;
+      tangents[axis][axis] += size_mm(axis, its.z.middle(), false);
+      tangents[axis][2] = step;
+    }
+    return static_cast<int>(std::lround(4096 * float_shear(tangents[0], tangents[1])));
   }
 
   void judge(FloatCell& cell, int x_cell, int y_cell, int reach_px) const {
@@ -143,10 +168,17 @@ class FloatCells {
     int begin[2] = {x_cell, y_cell};
     int end[2] = {std::min(x_cell + 16, size[0]), std::min(y_cell + 16, size[1])};
     const Steepness own = steepness(begin, end);
-    begin[axis_] = std::max(begin[axis_] - reach_px, 0) & ~15;
-    end[axis_] = std::min(((x_cell * (1 - axis_) + y_cell * axis_ + 16) + reach_px + 15) & ~15, size[axis_]);
+    int shear = sheared_ ? shear_of(own, corner) : 0;
+    const int to_side = float_side(std::abs(shear), std::min(reach_px, std::max(size[0], size[1])));
+    if (to_side == 0) shear = 0;
+    for (int i = 0; i < 2; ++i) {
+      const int reach = i == axis_ ? reach_px : to_side;
+      begin[i] = std::max(corner[i] - reach, 0) & ~15;
+      end[i] = std::min((corner[i] + 16 + reach + 15) & ~15, size[i]);
+    }
+    const float side = static_cast<float>(shear) / 4096;
     const Steepness near = steepness(begin, end);
-    const auto [change2, varying2] = squared_change(near, corner);
+    const auto [change2, varying2] = squared_change(near, corner, side);
     float range = std::sqrt(change2);
     for (int i = 0; i < 2; ++i) {
       range = multiply_add(static_cast<float>(end[i] - begin[i]), near.steps[i].steepest(), range);
@@ -154,7 +186,8 @@ class FloatCells {
     const bool unbroken = 2 * near.z.half() <= range;
     cell.flat = unbroken && varying2 <= 0.1F * 0.1F * change2;
     cell.smooth = unbroken && !cell.flat && varying2 <= 0.4F * 0.4F * change2;
-    cell.change_mm = std::sqrt(cell.smooth ? squared_change(own, corner)[0] : change2);
+    cell.change_mm = std::sqrt(cell.smooth ? squared_change(own, corner, side)[0] : change2);
+    if (cell.flat || cell.smooth) cell.shear = shear;
   }
 
   int axis_;
@@ -162,5 +195,6 @@ class FloatCells {
   std::span<const dermis::oracle::Material> materials_;
   const std::vector<FloatPixel>& pixels_;
   bool fused_;
+  bool sheared_;
   int columns_;
 };

@@ -159,10 +159,12 @@ class FloatFilter {
         const int straight = rung.offsets_px[i];
         std::array<int, 2> offset{axis == 0 ? straight : 0, axis == 0 ? 0 : straight};
         const double reach = options_.jitter * static_cast<double>(rung.footprint) * taps.radius_mm;
-        if (straight <= reach) offset = turned(axis, x, y, straight);
+        const bool turns = straight <= reach;
+        if (turns) offset = turned(axis, x, y, straight);
         for (const int sign : {-1, 1}) {
-          const int tx = x + sign * offset[0];
+          int tx = x + sign * offset[0];
           const int ty = y + sign * offset[1];
+          if (axis == 1 && !turns) tx += float_side(plane ? cell.shear : pixel.shear, sign * straight);
           if (tx < 0 || ty < 0 || tx >= made_.width || ty >= made_.height) continue;
           const std::size_t q = static_cast<std::size_t>(ty) * made_.width + tx;
           if (pixels_[q].material != pixel.material || pixels_[q].bad) continue;
@@ -217,19 +219,34 @@ class FloatFilter {
     float after = has_after ? z(p + next) - z(p) : 0;
     if (!has_before) before = after;
     if (!has_after) after = before;
-    const float slope = (before + after) / 2;
-    const float bent = after - before;
+    float slope = (before + after) / 2;
+    float bent = after - before;
+    const int shear = cells_[static_cast<std::size_t>(axis)].at(x, y).shear;
+    const float side = static_cast<float>(shear) / 4096;
+    if (shear != 0) {
+      const bool has_left = x > 0 && shows(p - 1);
+      const bool has_right = x + 1 < made_.width && shows(p + 1);
+      float left = has_left ? z(p) - z(p - 1) : 0;
+      float right = has_right ? z(p + 1) - z(p) : 0;
+      if (!has_left) left = right;
+      if (!has_right) right = left;
+      float crossed = 0;
+      if (x > 0 && y > 0 && x + 1 < made_.width && y + 1 < made_.height && shows(p - made_.width - 1) &&
+          shows(p + made_.width + 1)) {
+        crossed = (z(p + made_.width + 1) - z(p)) - (z(p) - z(p - made_.width - 1)) - (right - left) - bent;
+      }
+      slope += side * (left + right) / 2;
+      bent += side * (side * (right - left) + crossed);
+    }
     const bool perspective = made_.camera.projection == dermis::Camera::Projection::perspective;
     float length2 = slope * slope;
     float growth = slope * bent;
     for (int j = 0; j < 2; ++j) {
       const float ray = perspective ? pixel.position[j] / pixel.position[2] : 0;
-      float change = ray * slope;
+      const float columns = j == axis ? 1 : side;
+      const float change = ray * slope + columns / pixel.footprint[j];
       float change_of_change = ray * bent;
-      if (j == axis) {
-        change += 1 / pixel.footprint[j];
-        if (perspective) change_of_change += 2 * slope / (pixel.footprint[j] * pixel.position[2]);
-      }
+      if (perspective) change_of_change += 2 * columns * slope / (pixel.footprint[j] * pixel.position[2]);
       length2 = multiply_add(change, change, length2);
       growth = multiply_add(change, change_of_change, growth);
     }

@@ -1,6 +1,7 @@
 // The pixels of a frame as a float32 device might see them. For the oracle's bounds.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <span>
@@ -16,12 +17,25 @@ struct FloatPixel {
   std::array<float, 3> position{};
   std::array<float, 2> footprint{};
   std::array<float, 2> segment{};
+  int shear = 0;  ///< columns per row of the vertical pass, times 4096
   std::array<float, 3> k{};
   float spread = 0;
   std::array<float, 3> x{};
 
   bool touched() const { return wide && !bad; }
 };
+
+inline bool is_sheared(const MadeFrame& made, const dermis::Options& options) {
+  return !made.depth.empty() && options.sheared && options.jitter == 0;
+}
+
+/// Between changes of position.
+inline float float_shear(const std::array<float, 3>& x, const std::array<float, 3>& y) {
+  const float mixed = x[0] * y[0] + x[1] * y[1] + x[2] * y[2];
+  return std::clamp(-mixed / (x[0] * x[0] + x[1] * x[1] + x[2] * x[2]), -1.0F, 1.0F);
+}
+
+inline int float_side(int shear, int offset) { return std::clamp((shear * offset + 2048) >> 12, -32, 32); }
 
 class FloatSurface {
  public:
@@ -86,6 +100,7 @@ class FloatSurface {
     const int size[2] = {made_.width, made_.height};
     const int step[2] = {1, made_.width};
     const bool perspective = made_.camera.projection == dermis::Camera::Projection::perspective;
+    std::array<std::array<float, 3>, 2> tangents{};
     for (int axis = 0; axis < 2; ++axis) {
       const auto difference = [&](int sign) -> float {
         const int to = place[axis] + sign;
@@ -98,13 +113,21 @@ class FloatSurface {
       const float backward = difference(-1);
       float slope = std::fabs(forward) < std::fabs(backward) || std::isnan(backward) ? forward : backward;
       if (std::isnan(slope) || forward * backward <= 0) slope = 0;
-      float sum = slope * slope;
       for (int j = 0; j < 2; ++j) {
         const float ray = perspective ? pixel.position[j] / pixel.position[2] : 0;
-        const float change = ray * slope + (j == axis ? 1 / pixel.footprint[j] : 0);
-        sum += change * change;
+        tangents[axis][j] = ray * slope + (j == axis ? 1 / pixel.footprint[j] : 0);
       }
-      pixel.segment[axis] = std::sqrt(sum);
+      tangents[axis][2] = slope;
+    }
+    auto& [along_x, along_y] = tangents;
+    if (is_sheared(made_, options_)) {
+      const float shear = float_shear(along_x, along_y);
+      pixel.shear = static_cast<int>(std::lround(4096 * shear));
+      for (int j = 0; j < 3; ++j) along_y[j] += shear * along_x[j];
+    }
+    for (int axis = 0; axis < 2; ++axis) {
+      const auto& [x, y, z] = tangents[axis];
+      pixel.segment[axis] = std::sqrt(x * x + y * y + z * z);
     }
   }
 
