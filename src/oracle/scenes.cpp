@@ -18,7 +18,6 @@ namespace dermis::oracle {
 namespace {
 
 constexpr float unseen_depth = 1e10F;
-constexpr double focal_per_side = 2;  // the longer side of the frame spans 28 degrees
 
 /// A grey gloss on top of the diffuse light.
 double highlight(const Vec3& normal, const Vec3& towards_viewer) {
@@ -26,9 +25,8 @@ double highlight(const Vec3& normal, const Vec3& towards_viewer) {
   return 0.3 * std::pow(std::max(0.0, dot(normal, half_way)), 30);
 }
 
-Camera camera_for(int width, int height, double px_per_mm, Camera::Projection projection) {
-  const double scale =
-      projection == Camera::Projection::perspective ? focal_per_side * std::max(width, height) : px_per_mm;
+Camera camera_for(int width, int height, double px_per_mm, double focal_px, Camera::Projection projection) {
+  const double scale = projection == Camera::Projection::perspective ? focal_px : px_per_mm;
   return {projection, scale, scale, width / 2.0, height / 2.0};
 }
 
@@ -119,8 +117,9 @@ std::span<const SceneInfo> scenes() {
 Scene scene(std::string_view name, int width, int height, double px_per_mm, Camera::Projection projection) {
   const Kind& kind = kind_of(name);
   check(width, height, px_per_mm);
-  const Camera camera = camera_for(width, height, px_per_mm, projection);
-  const double distance_mm = focal_per_side * std::max(width, height) / px_per_mm;
+  const double focal_px = kind.focal_per_side * std::max(width, height);
+  const Camera camera = camera_for(width, height, px_per_mm, focal_px, projection);
+  const double distance_mm = focal_px / px_per_mm;
   const Setting setting{width, height, px_per_mm, distance_mm, View(camera, 1)};
   const std::unique_ptr<Subject> subject = kind.make(setting);
   Scene scene = empty_scene(width, height, camera);

@@ -137,12 +137,19 @@ std::unique_ptr<Subject> make(const Setting& setting) {
 }  // namespace
 
 std::span<const Kind> kinds() {
-  static const std::array<Kind, 5> all{
+  static const std::array<Kind, 7> all{
       {{{"impulse", "one lit pixel on a plane parallel to the screen"}, make<Impulse>},
        {{"step", "a vertical shadow edge on a plane parallel to the screen"}, make<Step>},
        {{"tilted", "a plane at 60 degrees to the screen under a checkered light"}, make<Tilted>},
        {{"sphere", "a sphere with cast shadows over a background of no material"}, make<Sphere>},
-       {{"touching", "two materials side by side on one plane, one lit red, the other blue"}, make<Touching>}}};
+       {{"touching", "two materials side by side on one plane, one lit red, the other blue"}, make<Touching>},
+       // A lens of 20 degrees from top to bottom of a frame of 280 x 250.
+       {{"spheres", "a small sphere over the edge of a large one, before a bright plane, all of one material"},
+        make_two_spheres,
+        2.53},
+       {{"head", "a bumpy head of three materials with a thin ear before its cheek, by a lens of 90 degrees"},
+        make_head,
+        0.5}}};
   return all;
 }
 

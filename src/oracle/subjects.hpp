@@ -68,7 +68,11 @@ class Subject {
 struct Kind {
   SceneInfo info;
   std::unique_ptr<Subject> (*make)(const Setting& setting);
+  double focal_per_side = 2;  ///< focal length of its perspective camera over the longer side of the frame
 };
+
+std::unique_ptr<Subject> make_two_spheres(const Setting& setting);
+std::unique_ptr<Subject> make_head(const Setting& setting);
 
 /// All there are.
 std::span<const Kind> kinds();

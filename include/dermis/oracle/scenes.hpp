@@ -10,7 +10,7 @@
 
 namespace dermis::oracle {
 
-/// A made G-buffer with one scene unit to the millimetre. Images are packed; material ids are 0 (none), 1 and 2.
+/// A made G-buffer with one scene unit to the millimetre. Images are packed; material ids are 0 (none) to 3.
 struct Scene {
   int width = 0;
   int height = 0;
@@ -34,7 +34,9 @@ struct SceneInfo {
 
 /// impulse (one lit pixel on a plane parallel to the screen), step (a vertical shadow edge on it), tilted (a plane at
 /// 60 degrees under a checkered light), sphere (over a background plane of no material, with a cast shadow), touching
-/// (two materials side by side on one plane, one lit red, the other blue).
+/// (two materials side by side on one plane, one lit red, the other blue), spheres (a small one over the edge of a
+/// large one, far before a bright plane, all of one material), head (bumpy, of three materials, with a thin ear before
+/// its cheek; by a lens of 90 degrees, the others by one of 28 or, of the spheres, 22).
 std::span<const SceneInfo> scenes();
 
 /// Makes a scene of that size. About `px_per_mm` pixels to the millimetre at its middle, seen by a perspective camera
