@@ -103,6 +103,7 @@ std::string Case::method() const {
 
 std::string Case::name() const {
   std::string text = method() + "/" + scene.name();
+  if (!sheared) text += "/plain";
   if (threads > 0) text += fmt::format("/threads{}", threads);
   if (memory == Memory::interleaved_f16) text += "/rgba-half";
   return text;

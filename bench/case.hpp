@@ -42,6 +42,7 @@ struct Case {
   SceneSpec scene = {};
   TapsDesign design = {.rank = 2};  ///< of dermis; of the opponents only `count`
   double tolerance = 0;             ///< > 0: in place of the design, the cheapest that is predicted to be as good
+  bool sheared = true;              ///< of dermis, as Options::sheared
   int threads = 0;                  ///< of dermis; 0: all
   Memory memory = Memory::planar_f32;
   bool cache_is_filled = false;  ///< of a start-up: kernels were compiled by an earlier process

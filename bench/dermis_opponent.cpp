@@ -1,4 +1,5 @@
 // dermis itself, as its callers see it: plan.run on images in host memory.
+#include <algorithm>
 #include <cstdint>
 
 #include "aligned.hpp"
@@ -31,6 +32,10 @@ class Filter final : public Opponent {
     }
   }
 
+  void reset() override {
+    if (in_place_) std::copy(scene_.light.begin(), scene_.light.end(), scattered_.begin());
+  }
+
   void run() override { stats_ = plan_.run(frame()); }
 
   std::vector<float> result() override {
@@ -47,7 +52,9 @@ class Filter final : public Opponent {
 
  private:
   static Options options_of(const Case& what) {
-    return {.method = what.family == Family::dermis_exact ? Method::exact : Method::separable, .taps = what.design};
+    return {.method = what.family == Family::dermis_exact ? Method::exact : Method::separable,
+            .taps = what.design,
+            .sheared = what.sheared};
   }
 
   Frame frame() {

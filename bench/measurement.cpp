@@ -62,6 +62,7 @@ struct Runner {
   std::map<std::string, std::vector<double>> stages_ms;
 
   void run() {
+    opponent->reset();
     ms.push_back(time_ms([&] { opponent->run(); }));
     if (const std::optional<Stats> stats = opponent->stats()) {
       stages_ms["prepare"].push_back(stats->prepare_ms);

@@ -17,6 +17,7 @@ class Opponent {
   Opponent& operator=(const Opponent&) = delete;
   virtual ~Opponent() = default;
 
+  virtual void reset() {}                              ///< puts back what a run writes over
   virtual void run() = 0;                              ///< returns when all is done
   virtual std::vector<float> result() = 0;             ///< of the last run: three planes
   virtual std::optional<Stats> stats() { return {}; }  ///< of the last run, if it is dermis

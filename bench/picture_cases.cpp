@@ -31,6 +31,11 @@ std::vector<PictureCase> picture_cases() {
   for (const int count : {11, 17, 25, 33}) cases.push_back(optimised(2, count));
   cases.push_back(optimised(3, 25));
   cases.push_back({"4 Gaussians, 17 taps", "", {.taps = {.model = Model::gaussians, .rank = 4, .count = 17}}});
+  PictureCase plain = optimised(2, 17);
+  plain.series.clear();
+  plain.name += ", plain passes";
+  plain.options.sheared = false;
+  cases.push_back(plain);
   cases.push_back(jittered(optimised(2, 17), 0.1));
   cases.push_back(jittered(optimised(2, 17), 0.3));
   return cases;

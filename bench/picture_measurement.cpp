@@ -5,6 +5,7 @@
 #include "copy.hpp"
 #include "dermis/oracle/compare.hpp"
 #include "percentile.hpp"
+#include "picture_edges.hpp"
 #include "stopwatch.hpp"
 
 namespace dermis::bench {
@@ -124,6 +125,8 @@ PictureMeasurement measure_picture(const Device& device, const Subject& subject,
   add_times(result.exact, exact, result.copy_ms);
   result.exact.rel_l2.assign(subject.materials.size(), 0.0);
   const oracle::Picture truth = picture_of(subject, exact.scattered);
+  const oracle::Picture edges = near_edges(subject);
+  result.edge_pixels = std::count(edges.values.begin(), edges.values.end(), 1.0);
   std::vector<oracle::Picture> masks;
   for (std::size_t i = 0; i < subject.materials.size(); ++i) {
     masks.push_back(mask_of(subject, i));
@@ -138,6 +141,7 @@ PictureMeasurement measure_picture(const Device& device, const Subject& subject,
       one.row.rel_l2.push_back(difference.relative_l2);
       one.row.max_error = std::max(one.row.max_error, difference.max);
     }
+    one.row.edge_rel_l2 = oracle::compare(picture, truth, edges).relative_l2;
     result.rows.push_back(one.row);
   }
   return result;

@@ -36,6 +36,7 @@ struct PictureMeasurement {
   std::vector<PictureRow> rows;
   double copy_ms = 0;
   std::vector<long> pixels;  ///< per material
+  long edge_pixels = 0;      ///< of any material, near an edge
 };
 
 /// Runs the exact method once, then every case in turn, `rounds` times after two that do not count.

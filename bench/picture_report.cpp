@@ -20,6 +20,7 @@ namespace {
 std::string errors_of(const PictureRow& row) {
   std::string text;
   for (const double error : row.rel_l2) text += fmt::format(" {:.2f} % |", 100 * error);
+  text += fmt::format(" {:.2f} % |", 100 * row.edge_rel_l2);
   return text;
 }
 
@@ -40,6 +41,7 @@ nlohmann::ordered_json json_row(const PictureRow& row, const Subject& subject) {
           {"loads", row.loads},
           {"plan_ms", row.plan_ms},
           {"rel_l2", errors},
+          {"edge_rel_l2", row.edge_rel_l2},
           {"max_err", row.max_error}};
 }
 
@@ -64,7 +66,8 @@ std::string table_of(const PictureMeasurement& measurement, const Subject& subje
   for (std::size_t i = 0; i < subject.material_names.size(); ++i) {
     text += fmt::format(" {} ({} px) |", subject.material_names[i], measurement.pixels[i]);
   }
-  text += "\n|---|---|---|---|";
+  text += fmt::format(" within 3 px of edges ({} px) |", measurement.edge_pixels);
+  text += "\n|---|---|---|---|---|";
   for (std::size_t i = 0; i < subject.material_names.size(); ++i) text += "---|";
   for (const PictureRow& row : measurement.rows) {
     text += fmt::format("\n| {} | {} | {:.1f} ({:.1f}..{:.1f}) | {:.1f} |{}", row.what.name, row.loads, row.ms,

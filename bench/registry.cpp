@@ -45,6 +45,8 @@ void add_methods(std::vector<Case>& cases) {
   for (const int count : {7, 17, 25, 33}) cases.push_back({.design = optimised(1, count)});
   for (const int count : {7, 17, 25, 33}) cases.push_back({.design = optimised(2, count)});
   for (const int count : {17, 25}) cases.push_back({.design = optimised(3, count)});
+  for (const int count : {7, 17, 25}) cases.push_back({.design = optimised(1, count), .sheared = false});
+  cases.push_back({.design = optimised(2, 17), .sheared = false});
   cases.push_back({.design = {.model = Model::gaussians, .rank = 4, .count = 17}});
   cases.push_back({.family = Family::dermis_exact, .scene = sized({}, {320, 180})});
   for (const Family family : {Family::naive, Family::rule_2012}) {

@@ -69,6 +69,15 @@ FORCED_INLINE int in_frame(const struct FrameParams* f, const Pass* s, int x, in
   return at_x > -V && at_x < f->width && at_y >= 0 && at_y < f->height;
 }
 
+// Those of the V pixels an offset away that are of a material and in the frame: beyond it the rows of the vertical pass
+// hold anything.
+FORCED_INLINE vint lanes_of(const struct FrameParams* f, const Pass* s, vint material, size_t tap, int x, int offset) {
+  const vint same = AS_MASK((load_bytes(s->from->material + tap) & MATERIAL_MASK) == material);
+  if (s->axis == 0 || s->shear == 0) return same;
+  const vint at_x = tap_x(s, x, offset) + int_lane_numbers();
+  return same & AS_MASK(at_x >= 0) & AS_MASK(at_x < f->width);
+}
+
 FORCED_INLINE vrgb add_scaled(global const float* factor, vrgb a, vrgb b) {
   const vrgb result = {fma((vfloat)(factor[0]), a.r, b.r), fma((vfloat)(factor[1]), a.g, b.g),
                        fma((vfloat)(factor[2]), a.b, b.b)};

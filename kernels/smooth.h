@@ -121,7 +121,7 @@ FORCED_INLINE void scatter_smooth(vrgb* result, const struct FrameParams* f, con
       const int offset = side * offsets[i];
       if (!in_frame(f, s, x, y, offset)) continue;
       const size_t tap = tap_at(s, x, y, offset);
-      const vint same = AS_MASK((load_bytes(s->from->material + tap) & MATERIAL_MASK) == material);
+      const vint same = lanes_of(f, s, material, tap, x, offset);
       there += keep(same, (vfloat)(1.0f));
       lopsided += keep(same, (vfloat)(side));
 #pragma unroll

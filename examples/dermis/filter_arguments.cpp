@@ -25,6 +25,13 @@ void add_method_arguments(CLI::App& app, FilterArguments& arguments) {
       ->default_str("separable");
   add_quality_arguments(app, arguments.quality);
   add_design_arguments(app, arguments.design);
+  app.add_option(
+         "--shear", arguments.shear,
+         "whether the vertical pass crosses the horizontal one at a right angle on the surface, not on the "
+         "screen: half the error where a surface is tilted both ways, for up to twice the time there; auto: on, "
+         "but with a tolerance of 2 % and more (draft, preview) and with jitter off")
+      ->check(one_of({"auto", "on", "off"}))
+      ->capture_default_str();
   app.add_option("--jitter", options.jitter, "share of the kernel radius within which taps are rotated per pixel")
       ->check(number_0_to_1())
       ->capture_default_str();
@@ -74,6 +81,12 @@ void add_output_arguments(CLI::App& app, FilterArguments& arguments) {
       ->type_name("FILE");
 }
 
+bool is_sheared(const FilterArguments& arguments) {
+  constexpr double coarse = 0.02;
+  if (arguments.shear != "auto") return arguments.shear == "on";
+  return arguments.options.jitter == 0 && !(is_automatic(arguments) && tolerance_of(arguments.quality) >= coarse);
+}
+
 /// Throws Error(usage) for options that say different things of how good the result is to be.
 void check_quality(const FilterArguments& arguments) {
   const QualityArguments& quality = arguments.quality;
@@ -96,6 +109,8 @@ void check_quality(const FilterArguments& arguments) {
   if (has_count && (quality.given() || asks_for_automatic(arguments.design)))
     refuse("--taps", *arguments.design.taps,
            quality.given() ? command_text(quality).substr(1) : std::string("--rank auto"), "auto with it");
+  if (arguments.shear == "on" && arguments.options.jitter > 0)
+    refuse("--shear", arguments.shear, fmt::format("--jitter {}", arguments.options.jitter), "off or auto with it");
 }
 
 }  // namespace
@@ -178,6 +193,7 @@ Options options_of(const FilterArguments& arguments) {
   Options options = arguments.options;
   options.taps = design_of(arguments.design, is_automatic(arguments) ? tolerance_of(arguments.quality) : 0);
   options.method = is_exact(arguments) ? Method::exact : Method::separable;
+  options.sheared = is_sheared(arguments);
   if (options.method == Method::exact && !arguments.tile_map.empty())
     throw Error(ErrorCode::usage, "--tile-map", arguments.tile_map + " with the exact method",
                 "the separable method with it, for the exact one has no tiles");
@@ -201,6 +217,7 @@ std::string command_text(const FilterArguments& arguments) {
     if (is_automatic(arguments)) text += command_text(arguments.quality);
     if (!is_automatic(arguments) || !first_given(arguments.design).empty())
       text += command_text(design_of(arguments.design, is_automatic(arguments) ? tolerance_of(arguments.quality) : 0));
+    add("--shear", is_sheared(arguments) ? "on" : "off");
     add("--jitter", arguments.options.jitter);
     add("--seed", arguments.options.seed);
   }

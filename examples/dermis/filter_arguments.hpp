@@ -31,6 +31,7 @@ struct FilterArguments {
   DesignArguments design{.defaults = Options{}.taps, .may_be_automatic = true};
   std::string bad_pixels = "keep";
   std::string lighting = "raw";
+  std::string shear = "auto";
   Options options;  ///< but for what stands above
 };
 

@@ -113,7 +113,9 @@ std::string text_of(const StatsReport& report) {
                                  report.device.compute_units);
   text += fmt::format("camera      {}\n", text_of(report.camera));
   text += fmt::format("method      {}", name_of(options.method));
-  if (options.method == Method::separable) text += fmt::format(", jitter {}, seed {}", options.jitter, options.seed);
+  if (options.method == Method::separable) {
+    text += fmt::format(", shear {}, jitter {}, seed {}", options.sheared ? "on" : "off", options.jitter, options.seed);
+  }
   if (!report.quality.empty()) text += fmt::format(", quality {}", report.quality);
   if (report.tolerance) text += fmt::format(", tolerance {}", *report.tolerance);
   text += '\n';
@@ -142,6 +144,7 @@ std::string json_text_of(const StatsReport& report) {
                  {"method", name_of(report.options.method)},
                  {"quality", report.quality.empty() ? json(nullptr) : json(report.quality)},
                  {"tolerance", or_null(report.tolerance)},
+                 {"sheared", report.options.sheared},
                  {"jitter", report.options.jitter},
                  {"seed", report.options.seed},
                  {"times_ms", times_of(report)},

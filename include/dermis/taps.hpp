@@ -152,10 +152,20 @@ struct Rung {
 ///     result = sum w_i x_i / sum w_i                      if t is normalised
 ///            = sum_t x_p + g sum w_i (x_i - x_p)          if not, g = 1 / max(1, sum w_i(first term))
 ///
-/// where P are the surface points and s is the length of surface, mm, that a pixel spans along the pass: |dP/dx| or
-/// |dP/dy|, the change of depth in it being the smaller one of the differences to both neighbours of the same material,
-/// 0 if they differ in sign. The sums go over the taps that lie on the same material. The horizontal pass makes one
-/// image per term from the light, the vertical pass the sum over terms of scale times its result on that image.
+/// where P are the surface points and s is the length of surface, mm, that a pixel spans along the pass. The sums go
+/// over the taps that lie on the same material. The horizontal pass makes one image per term from the light, the
+/// vertical pass the sum over terms of scale times its result on that image.
+///
+/// Let X and Y be the change of position with one pixel along x and along y, the change of depth in it being the
+/// smaller one of the differences to both neighbours of the same material, 0 if they differ in sign. The horizontal
+/// pass runs along (1, 0), with s = |X|. The vertical one runs along (shear, 1),
+///
+///     shear = - X.Y / X.X, held within -1..1      s = |Y + shear X|
+///
+/// so that on the surface it crosses the horizontal one at a right angle (Gram and Schmidt): on the screen a surface
+/// that is tilted both ways shows its axes askew. The tap of offset o lies o rows below and floor(o shear + 1/2)
+/// columns to the side, held within -32..32, shear rounded to 1/4096. Shear is 0 without depth, with rotated taps, and
+/// without Options::sheared.
 ///
 /// A cell is 16 x 16 pixels, its corner at a multiple of 16. Its rung in a pass is that of the kernel radius
 /// radius_mm * max over its pixels that scatter of F max_c(k_c relative_width_c), where F is the pixel's footprint
@@ -164,11 +174,12 @@ struct Rung {
 /// On a flat cell the weights are those of the rung: w_i = flat_weights_i, whatever the depth; and its rung in a pass
 /// along x, and the eighth of the rung, is the nearest to the kernel radius radius_mm / |T|, as the surface is seen at
 /// an angle. A cell is flat in a pass if no pixel has a width of its own and no tap is rotated, and if there is no
-/// depth, or the surface within reach is nearly a plane. Of the pixels with a material in the cells of the same row
-/// (column, for the vertical pass) that lie at least partly within ceil(largest radius_mm of the cell's materials * F)
-/// pixels of the cell, let z be the depths and g, h the differences between the depths of neighbours of the same
-/// material within a cell, in x and in y; with their middles z', g', h' and half ranges dz, dg, dh (0 where there is no
-/// pair), and x', y' = change of position with depth along the ray through the middle of the cell,
+/// depth, or the surface within reach is nearly a plane. Reach is 9/8 of the farthest tap, for the radius above, of the
+/// materials that scatter in the cell. Of the pixels with a material in the cells of the same row (column, for the
+/// vertical pass) that lie at least partly within reach, let z be the depths and g, h the differences between the
+/// depths of neighbours of the same material within a cell, in x and in y; with their middles z', g', h' and half
+/// ranges dz, dg, dh (0 where there is no pair), and x', y' = change of position with depth along the ray through the
+/// middle of the cell,
 ///
 ///     T  = (size(z') + x' g', y' g', g')                change of position per pixel
 ///     dT = (size(dz) + |x'| dg, |y'| dg, dg)            how much it may vary; size(dz) = dz / focal length
@@ -176,7 +187,10 @@ struct Rung {
 ///         and 2 dz <= columns (|g'| + dg) + rows (|h'| + dh) + |T|   no step, columns and rows counting the pixels of
 ///                                                       those cells that lie in the frame
 ///
-/// and the same with x and y exchanged. A cell is smooth in a pass if it is not flat, but would be with `smoothness` in
+/// and the same with x and y exchanged. In the vertical pass all pixels of a flat cell share the shear in its middle,
+/// of the z', g' and h' of its own pixels; the cells beside those in the column that the taps reach are looked at too,
+/// and T and dT are those along (shear, 1): T + shear times the other T, dT + |shear| times the other dT. A shear that
+/// moves no tap within reach is 0. A cell is smooth in a pass if it is not flat, but would be with `smoothness` in
 /// place of `flatness`. Its rung is the nearest to the same kernel radius, and the weights are, to first order, those
 /// of the true distances along a surface that bends:
 ///
@@ -184,8 +198,10 @@ struct Rung {
 ///     q = rung.footprint^2 |T|^2 - 1,  k = rung.footprint^2 T.T'    both held within -most_stretch..most_stretch and
 ///                                                                 -most_skew / last offset..most_skew / last offset
 ///
-/// where T is the pixel's own change of position along the pass and T' that of T, both by central differences of depth
-/// (of the difference to the only neighbour of the same material if the other one is of another; 0 if there is none).
+/// where T is the pixel's own change of position along the pass, with the cell's shear, and T' that of T, both by
+/// central differences of depth (of the difference to the only neighbour of the same material if the other one is of
+/// another; 0 if there is none); the mixed second difference is that of the pixels on the diagonal, 0 unless both are
+/// of the material.
 struct Taps {
   /// The radius, mm, beyond which the passes do not look: 99.9 % of the widest channel's marginal lie within for rank
   /// 1, 99.99 % for rank 2, 99.999 % for more.
