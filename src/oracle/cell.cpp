@@ -118,11 +118,11 @@ struct Cells::Variation {
   Bounded squared_length_varying;  ///< of dT
 };
 
-Cells::Variation Cells::variation(Axis axis, int column, int row, int shear, const Range& depth_mm,
+Cells::Variation Cells::variation(Axis axis, int column, int row, const ShearChoice& shear, const Range& depth_mm,
                                   const std::array<Range, 2>& step_mm) const {
   const oracle::View& view = surface_.view();
   const std::array<int, 2> corner_px{cell_px * column, cell_px * row};
-  const Bounded side = exact(shear / 4096.0);
+  const Bounded side = shear.columns();
   const Range& along_mm = step_mm[axis];
   const Range& across_mm = step_mm[1 - axis];
   const Bounded step = along_mm.middle() + side * across_mm.middle();
@@ -189,7 +189,7 @@ void Cells::add_kinds(Axis axis, int column, int row, const View& view, std::vec
              view.shear});
         break;
       case Shape::curved:
-        kinds.push_back({shape, cell.footprint[axis].bounded(), 0});
+        kinds.push_back({shape, cell.footprint[axis].bounded(), {}});
     }
   };
   const Shape nominal = flat.yes ? Shape::flat : smooth.yes ? Shape::smooth : Shape::curved;
@@ -230,22 +230,24 @@ std::vector<Cells::View> Cells::views(Axis axis, int column, int row) const {
   const ShearChoice shears = axis == vertical ? shear(column, row) : ShearChoice{};
   const int frame_px = std::max(surface_.width(), surface_.height());
   std::vector<View> all;
-  const auto add = [&](int along_px, int shear) {
-    along_px = std::min(along_px, frame_px);
-    const int side = side_px(std::abs(shear), along_px);
-    const View view{cells_over(along_px), cells_over(side), side == 0 ? 0 : shear};
+  const auto add = [&](const View& view) {
     if (std::find(all.begin(), all.end(), view) == all.end()) all.push_back(view);
   };
-  add(reach_px.nominal_px, shears.nominal);
-  for (int along_px = reach_px.least_px; along_px <= reach_px.most_px; ++along_px) {
-    for (int shear = shears.lowest; shear <= shears.highest; ++shear) add(along_px, shear);
-  }
+  const auto add_sides = [&](int along_px) {
+    along_px = std::min(along_px, frame_px);
+    // A shear that moves no tap is none.
+    for (const int side : sides_px(shears.magnitude(), along_px)) {
+      add({cells_over(along_px), cells_over(side), side == 0 ? ShearChoice{} : shears});
+    }
+  };
+  add_sides(reach_px.nominal_px);
+  for (int along_px = reach_px.least_px; along_px <= reach_px.most_px; ++along_px) add_sides(along_px);
   return all;
 }
 
 std::vector<CellKind> Cells::kinds(Axis axis, int column, int row) const {
   const Cell& cell = at(column, row);
-  if (!may_be_flat_) return {{Shape::curved, cell.footprint[axis].bounded(), 0}};
+  if (!may_be_flat_) return {{Shape::curved, cell.footprint[axis].bounded(), {}}};
   std::vector<CellKind> kinds;
   for (const View& view : views(axis, column, row)) add_kinds(axis, column, row, view, kinds);
   return kinds;

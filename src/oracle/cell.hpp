@@ -23,7 +23,7 @@ enum class Shape { flat, smooth, curved };
 struct CellKind {
   Shape shape;
   Bounded footprint;  ///< px per mm: the largest of the pixels times k, or unless curved that of the tilted surface
-  int shear;          ///< of the vertical pass, in 1/4096; 0 if curved
+  ShearChoice shear;  ///< of the vertical pass; 0 if curved
 };
 
 class Cells {
@@ -102,7 +102,7 @@ class Cells {
   struct View {
     int along_cells;  ///< to either side along the pass
     int side_cells;   ///< across it
-    int shear;        ///< in 1/4096
+    ShearChoice shear;
 
     bool operator==(const View&) const = default;
   };
@@ -114,7 +114,7 @@ class Cells {
   const Cell& at(int column, int row) const { return cells_[static_cast<std::size_t>(row) * columns_ + column]; }
   Surroundings surroundings(Axis axis, int column, int row, const View& view) const;
   struct Variation;
-  Variation variation(Axis axis, int column, int row, int shear, const Range& depth_mm,
+  Variation variation(Axis axis, int column, int row, const ShearChoice& shear, const Range& depth_mm,
                       const std::array<Range, 2>& step_mm) const;
   ShearChoice shear(int column, int row) const;
   std::vector<View> views(Axis axis, int column, int row) const;

@@ -11,11 +11,11 @@ namespace dermis::oracle {
 
 /// How a pass sums at a pixel.
 struct Way {
-  Shape shape;    ///< of the cell
-  int flat_part;  ///< of the rung, whose weights are taken on a flat cell; 0 elsewhere
-  int rung;       ///< -1: the kernel is too narrow for taps
-  int rotated;    ///< how many of the rung's pairs, the innermost first
-  int shear;      ///< of the vertical pass, in 1/4096; 0 on a curved cell, where each pixel has its own
+  Shape shape;        ///< of the cell
+  int flat_part;      ///< of the rung, whose weights are taken on a flat cell; 0 elsewhere
+  int rung;           ///< -1: the kernel is too narrow for taps
+  int rotated;        ///< how many of the rung's pairs, the innermost first
+  ShearChoice shear;  ///< of the vertical pass; 0 on a curved cell, where each pixel has its own
 
   bool operator==(const Way&) const = default;
 };

@@ -217,12 +217,9 @@ struct Pass::Reading {
 
 /// Where a tap of the vertical pass may lie: the oracle's place first.
 std::vector<PixelOffset> Pass::sheared(int x, int y, int offset_px, const Way& way) const {
-  if (way.shape != Shape::curved) return {{side_px(way.shear, offset_px), offset_px}};
-  const ShearChoice shear = surface_.shear(x, y);
-  std::vector<PixelOffset> offsets{{side_px(shear.nominal, offset_px), offset_px}};
-  for (int may_be = shear.lowest; may_be <= shear.highest; ++may_be) {
-    const PixelOffset offset{side_px(may_be, offset_px), offset_px};
-    if (std::find(offsets.begin(), offsets.end(), offset) == offsets.end()) offsets.push_back(offset);
+  std::vector<PixelOffset> offsets;
+  for (const int side : sides_px(way.shape == Shape::curved ? surface_.shear(x, y) : way.shear, offset_px)) {
+    offsets.push_back({side, offset_px});
   }
   return offsets;
 }

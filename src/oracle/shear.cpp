@@ -27,6 +27,13 @@ Bounded shear_between(const Tangent& along_x, const Tangent& along_y) {
   return {shear, std::max(held(ratio.low()) - shear, shear - held(ratio.high()))};
 }
 
+Bounded ShearChoice::columns() const { return {nominal / one, std::max(highest - nominal, nominal - lowest) / one}; }
+
+ShearChoice ShearChoice::magnitude() const {
+  const auto [low, high] = std::minmax({std::abs(lowest), std::abs(highest)});
+  return {std::abs(nominal), lowest <= 0 && highest >= 0 ? 0 : low, high};
+}
+
 ShearChoice whole_shear(Bounded shear) {
   const auto whole = [](double value) { return static_cast<int>(std::lround(one * std::clamp(value, -1.0, 1.0))); };
   // Of a tie any neighbour may be taken.
@@ -37,6 +44,16 @@ ShearChoice whole_shear(Bounded shear) {
 int side_px(int shear, int offset_px) {
   const int side = (shear * offset_px + (1 << (fraction_bits - 1))) >> fraction_bits;
   return std::clamp(side, -most_px, most_px);
+}
+
+std::vector<int> sides_px(const ShearChoice& shear, int offset_px) {
+  const int nominal = side_px(shear.nominal, offset_px);
+  const auto [low, high] = std::minmax({side_px(shear.lowest, offset_px), side_px(shear.highest, offset_px)});
+  std::vector<int> sides{nominal};
+  for (int side = low; side <= high; ++side) {
+    if (side != nominal) sides.push_back(side);
+  }
+  return sides;
 }
 
 }  // namespace dermis::oracle

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <vector>
 
 #include "oracle/rounding.hpp"
 
@@ -19,11 +20,21 @@ struct ShearChoice {
   int nominal = 0;
   int lowest = 0;
   int highest = 0;
+
+  /// Columns per row.
+  Bounded columns() const;
+  /// Whatever its sign.
+  ShearChoice magnitude() const;
+
+  bool operator==(const ShearChoice&) const = default;
 };
 
 ShearChoice whole_shear(Bounded shear);
 
 /// Columns to the side of a tap so many rows below its pixel; `shear` in 1/4096.
 int side_px(int shear, int offset_px);
+
+/// The same for all that a device may take: the oracle's first.
+std::vector<int> sides_px(const ShearChoice& shear, int offset_px);
 
 }  // namespace dermis::oracle

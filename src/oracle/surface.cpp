@@ -164,13 +164,13 @@ Bounded Surface::cross_step(int x, int y, const DepthSteps& along_x, const Depth
 // T = (size + ray g, ray' g, g) along x; its change per pixel is (2 size' g + ray h, ray' h, h), where g and h are the
 // first and the second difference of depth, and size' = the change of the ray per pixel. Of a shear s, which adds s
 // columns to each row, g and h are those along (s, 1), and T has s times what it would have along x too.
-Bend Surface::bend(int x, int y, Axis axis, int shear, float footprint) const {
+Bend Surface::bend(int x, int y, Axis axis, const ShearChoice& shear, float footprint) const {
   const SurfacePixel& pixel = at(x, y);
   const DepthSteps steps = depth_steps(x, y, axis);
   Bounded g = exact(0.5) * (steps.forward + steps.backward);
   Bounded h = steps.forward - steps.backward;
-  const Bounded side = exact(axis == vertical ? shear / 4096.0 : 0);
-  if (side.value != 0) {
+  const Bounded side = axis == vertical ? shear.columns() : exact(0);
+  if (!is_exactly(side, 0)) {
     const DepthSteps across = depth_steps(x, y, horizontal);
     g = g + side * (exact(0.5) * (across.forward + across.backward));
     h = h + side * (side * (across.forward - across.backward) + exact(2) * cross_step(x, y, across, steps));

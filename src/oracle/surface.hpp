@@ -64,8 +64,8 @@ class Surface {
   /// The shear of a pixel.
   ShearChoice shear(int x, int y) const;
 
-  /// `shear`: of the vertical pass, in 1/4096.
-  Bend bend(int x, int y, Axis axis, int shear, float footprint) const;
+  /// `shear`: of the vertical pass.
+  Bend bend(int x, int y, Axis axis, const ShearChoice& shear, float footprint) const;
 
   /// 1 channel: 1 where a pixel takes light.
   Picture touched() const;
