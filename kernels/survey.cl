@@ -471,7 +471,7 @@ static inline struct CellPass pass_over(const struct FrameParams* f, global cons
   const CellView view = view_of(f, cell_x, cell_y, axis);
   Shape within_cell = unseen;
   join_cell(&within_cell, own, axis);
-  if (axis == 1) pass.shear = shear_of_cell(view, &within_cell);
+  if (SHEARED && axis == 1) pass.shear = shear_of_cell(view, &within_cell);
   const int side_px = side_of(abs(pass.shear), reach_px);
   if (side_px == 0) pass.shear = 0;
   const CellBox box = cells_around(f, cell_x, cell_y, axis, reach_px, side_px);

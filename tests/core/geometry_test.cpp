@@ -188,10 +188,11 @@ TEST_CASE("planes and bowls that are tilted both ways equal the oracle within fl
   };
   for (const Case& of : {Case{0.6, 0.7, 0, "flat"}, Case{-0.5, 1.2, 0, "flat"}, Case{0.5, 0.6, 0.012, "smooth"},
                          Case{0.8, -0.7, -0.012, "smooth"}, Case{1.5, 2.5, 0.2, "curved"}}) {
-    for (const int rank : {1, 2}) {
+    for (const auto& [rank, sheared] : {std::pair{1, true}, std::pair{2, true}, std::pair{2, false}}) {
       TiltedFrame tilted(of.slope_x, of.slope_y, of.curvature);
       const std::vector<Material> materials{{.profile = dermis::preset("skin").profile}};
-      const Options options = design(rank, 11);
+      Options options = design(rank, 11);
+      options.sheared = sheared;
       const dermis::Stats stats =
           Plan(Device::open(), materials, FrameDescription::of(tilted.frame), options).run(tilted.frame);
       const auto of_shape = std::string(of.shape) == "flat" ? stats.pixels_flat
@@ -206,7 +207,7 @@ TEST_CASE("planes and bowls that are tilted both ways equal the oracle within fl
         worst = std::max(worst, off / expected.scattered_bound.values[i]);
         bound += expected.scattered_bound.values[i] / static_cast<double>(tilted.scattered.size());
       }
-      CAPTURE(of.shape, of.slope_x, of.slope_y, rank, stats.pixels_flat, stats.pixels_smooth, worst, bound);
+      CAPTURE(of.shape, of.slope_x, of.slope_y, rank, sheared, stats.pixels_flat, stats.pixels_smooth, worst, bound);
       CHECK(2 * of_shape > stats.pixels_scattered);
       CHECK(worst <= 1);
       CHECK(bound < 1e-4);

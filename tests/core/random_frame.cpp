@@ -70,6 +70,7 @@ RandomFrame::RandomFrame(Random& random, const RandomFrameChoice& choice) : widt
 
   options.taps = random_design(random);
   options.jitter = choice.jitter.value_or(random.coin() ? 0 : random.uniform(0, 1));
+  options.sheared = random.coin() || random.coin();
   options.seed = static_cast<std::uint32_t>(random.integer(0, 1 << 30));
   options.lighting = with_albedo && random.coin() ? dermis::Lighting::lit : dermis::Lighting::raw;
   if (with_albedo && random.coin()) options.albedo_mix = random.coin() ? 0.5 : random.uniform(0, 1);

@@ -131,6 +131,7 @@ inline MadeFrame random_frame(Random& random, int width, int height, bool plain)
 inline Options random_options(Random& random, bool plain) {
   Options options;
   options.jitter = plain || random.coin() ? 0 : random.uniform(0, 1);
+  options.sheared = random.coin() || random.coin();
   options.seed = static_cast<std::uint32_t>(random.integer(0, 1 << 30));
   options.lighting = random.coin() ? Lighting::raw : Lighting::lit;
   options.albedo_mix = random.coin() ? 0 : random.uniform(0, 1);
