@@ -68,7 +68,7 @@ std::array<params::RotationParams, ROTATIONS> rotations(const Camera& camera) {
 }  // namespace
 
 RunSizes run_sizes(const Plan::State& plan, int width, int height) {
-  constexpr int tile_width_px = 256;
+  constexpr int tile_width_px = 240;
   constexpr int most_tile_px = 512;
   constexpr int least_tile_px = 32;
   constexpr int least_sparse_tile_px = 64;

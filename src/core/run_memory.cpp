@@ -11,7 +11,9 @@ int round_up(int value, int multiple) { return (value + multiple - 1) / multiple
 
 int parts(int whole, int part) { return (whole + part - 1) / part; }
 
-constexpr int alignment = 64;  ///< elements of a plane, so that the bytes after planes of floats align too
+constexpr std::size_t alignment = 64;  ///< elements of a plane, so that the bytes after planes of floats align too
+
+std::size_t aligned(std::size_t elements) { return (elements + alignment - 1) / alignment * alignment; }
 
 /// window_bytes of window.h.
 std::size_t window_bytes(std::size_t plane, int images, bool has_pixel_width) {
@@ -36,7 +38,7 @@ std::size_t RunSizes::across_plane() const {
   const std::size_t columns =
       std::min<std::size_t>(stride(), tile_width + 2 * (reach + round_up(side_px, CELL) + CELL) + 2 * PADDING);
   const std::size_t rows = turns_taps ? std::bit_ceil(std::min<std::size_t>(height, tile_height + 2 * reach)) : 1;
-  return static_cast<std::size_t>(round_up(static_cast<int>(columns), alignment)) * rows;
+  return aligned(columns * rows);
 }
 
 std::size_t RunSizes::down_plane() const {
@@ -51,7 +53,7 @@ std::size_t RunSizes::down_plane() const {
       std::min<std::size_t>(height, turns_taps ? tile_height + 2 * reach : 2 * reach + band_rows);
   // rows_mask of tile.cl
   const std::size_t rows = std::min<std::size_t>(height, std::bit_ceil(needed));
-  return static_cast<std::size_t>(round_up(static_cast<int>(columns), alignment)) * rows;
+  return aligned(columns * rows);
 }
 
 std::size_t RunSizes::windows_bytes() const {
