@@ -206,7 +206,8 @@ TEST_CASE("scenes refuse what they cannot make", "[scenes]") {
     FAIL("made a teapot");
   } catch (const Error& error) {
     CHECK(error.code() == ErrorCode::usage);
-    CHECK(std::string(error.what()) == "scene: got teapot, want one of impulse, step, tilted, sphere, touching, spheres, head");
+    CHECK(std::string(error.what()) ==
+          "scene: got teapot, want one of impulse, step, tilted, sphere, touching, spheres, head");
   }
   CHECK_THROWS_AS(scene("step", 0, 4), Error);
   CHECK_THROWS_AS(scene("step", 4, -1), Error);
