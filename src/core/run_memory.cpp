@@ -51,7 +51,7 @@ std::size_t RunSizes::down_plane() const {
   constexpr std::size_t band_rows = BAND + 3;
   const std::size_t needed =
       std::min<std::size_t>(height, turns_taps ? tile_height + 2 * reach : 2 * reach + band_rows);
-  // rows_mask of tile.cl
+  // rows_mask of tile_windows.h
   const std::size_t rows = std::min<std::size_t>(height, std::bit_ceil(needed));
   return aligned(columns * rows);
 }
