@@ -81,6 +81,7 @@ TEST_CASE("values outside their ranges are usage errors that name argument, valu
                                    {"--taps", "x", "odd number from 3 to 2047 or dense"},
                                    {"--taps", "", "odd number from 3 to 2047 or dense"},
                                    {"--jitter", "2", "0 to 1"},
+                                   {"--shear", "maybe", "auto or on or off"},
                                    {"--seed", "4294967296", "4294967295"},
                                    {"--rank", "0", "1 to 6"},
                                    {"--rank", "7", "1 to 6"},
@@ -196,6 +197,7 @@ TEST_CASE("options that contradict each other are usage errors") {
   call.check_refuses({"--tile-map", call.folder() / "t.png", "--stats-json", "-"}, 2, {"--stats-json", "--tile-map"});
   call.check_refuses({}, 2, {"--material", "--profile"}, "--material");
   call.check_refuses({"--material", "1=wax"}, 2, {"--material: got 1=wax", "once"});
+  call.check_refuses({"--shear", "on", "--jitter", "0.5"}, 2, {"--shear: got on with --jitter 0.5", "off or auto"});
 }
 
 TEST_CASE("a malformed profile is a usage error that says what a profile is") {

@@ -350,10 +350,13 @@ TEST_CASE("the record in the result is a command that makes it again") {
        " --model guided --rank 1 --taps 9 --placement importance --guide 1.25"},
       {{"--model", "optimised", "--rank", "3", "--taps", "7", "--non-negative"},
        " --model optimised --rank 3 --taps 7 --placement optimised --non-negative"},
-      {{"--tolerance", "0.03"}, " --method separable --tolerance 0.03 --jitter"},
-      {{}, " --method separable --quality final --jitter"},
+      {{"--tolerance", "0.03"}, " --method separable --tolerance 0.03 --shear off --jitter"},
+      {{}, " --method separable --quality final --shear on --jitter"},
       {{"--quality", "draft", "--rank", "2"},
-       " --method separable --quality draft --model optimised --rank 2 --placement optimised --jitter"},
+       " --method separable --quality draft --model optimised --rank 2 --placement optimised --shear off --jitter"},
+      {{"--quality", "draft", "--shear", "on"}, " --method separable --quality draft --shear on --jitter"},
+      {{"--taps", "9", "--shear", "off"}, " --placement optimised --shear off --jitter"},
+      {{"--taps", "9", "--jitter", "0.5"}, " --placement optimised --shear off --jitter 0.5"},
       {{"--quality", "reference"}, " --method exact --lighting"}};
   for (const Case& c : cases) {
     INFO(c.recorded);
