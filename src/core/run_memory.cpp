@@ -36,7 +36,7 @@ std::size_t RunSizes::across_plane() const {
   // Taps that are turned need the surroundings of the surroundings.
   const std::size_t reach = static_cast<std::size_t>(farthest_px) * (turns_taps ? 4 : 1) + (turns_taps ? 4 : 0);
   const std::size_t columns =
-      std::min<std::size_t>(stride(), tile_width + 2 * (reach + round_up(side_px, CELL) + CELL) + 2 * PADDING);
+      std::min<std::size_t>(stride(), tile_width + 2 * (reach + round_up(side_px, CELL) + CELL + PADDING));
   const std::size_t rows = turns_taps ? std::bit_ceil(std::min<std::size_t>(height, tile_height + 2 * reach)) : 1;
   return aligned(columns * rows);
 }
@@ -46,7 +46,7 @@ std::size_t RunSizes::down_plane() const {
   const std::size_t reach = static_cast<std::size_t>(farthest_px) * (turns_taps ? 2 : 1) + 2;
   const std::size_t turned = turns_taps ? reach + CELL : round_up(side_px, CELL);
   const std::size_t columns =
-      std::min<std::size_t>(stride(), round_up(tile_width, CELL) + 2 * turned + 2 * PADDING) + CELL;
+      std::min<std::size_t>(stride(), round_up(tile_width, CELL) + 2 * (turned + PADDING)) + CELL;
   // Without turned taps a row is not needed any more when the vertical pass is beyond it.
   constexpr std::size_t band_rows = BAND + 3;
   const std::size_t needed =
@@ -58,7 +58,7 @@ std::size_t RunSizes::down_plane() const {
 
 std::size_t RunSizes::windows_bytes() const {
   if (workers == 0) return window_bytes(across_plane(), 1, has_pixel_width);
-  const std::size_t band_bytes = 3 * BAND * static_cast<std::size_t>(round_up(tile_width, CELL)) * sizeof(float);
+  const std::size_t band_bytes = static_cast<std::size_t>(round_up(tile_width, CELL)) * 3 * BAND * sizeof(float);
   return workers *
          (window_bytes(across_plane(), 1, has_pixel_width) + window_bytes(down_plane(), terms, has_pixel_width) +
           band_bytes + across_plane() / CELL * sizeof(params::ChoiceParams));

@@ -130,7 +130,7 @@ Cells::Variation Cells::variation(Axis axis, int column, int row, const ShearCho
   Tangent change;   // T
   Tangent varying;  // dT
   for (const Axis i : {horizontal, vertical}) {
-    const Bounded ray = view.ray(i, corner_px[i] + cell_px / 2);
+    const Bounded ray = view.ray(i, corner_px[i] + cell_px / 2.0);
     const Bounded pixels = i == axis ? exact(1) : side;
     change[i] = ray * step + pixels * view.size_mm(i, depth_mm.middle());
     varying[i] = absolute(ray) * varying_step + absolute(pixels) * view.growth_mm(i, depth_mm.half_range());
@@ -150,7 +150,7 @@ ShearChoice Cells::shear(int column, int row) const {
   for (const Axis axis : {horizontal, vertical}) {
     const Bounded step = cell.step_mm[axis].middle();
     for (const Axis i : {horizontal, vertical}) {
-      tangents[axis][i] = view.ray(i, corner_px[i] + cell_px / 2) * step;
+      tangents[axis][i] = view.ray(i, corner_px[i] + cell_px / 2.0) * step;
       if (i == axis) tangents[axis][i] = tangents[axis][i] + view.size_mm(i, cell.depth_mm.middle());
     }
     tangents[axis][2] = step;

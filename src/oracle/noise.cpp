@@ -39,8 +39,9 @@ double octave(const Vec3& p, int channel) {
 }  // namespace
 
 double noise(const Vec3& p, int channel) {
+  constexpr int octaves = 5;
   double sum = 0;
-  for (double scale = 1; scale <= 16; scale *= 2) sum += octave(oracle::scaled(p, scale), channel) / scale;
+  for (int i = 0; i < octaves; ++i) sum += std::ldexp(octave(scaled(p, std::ldexp(1, i)), channel), -i);
   return sum;
 }
 

@@ -82,6 +82,8 @@ class Pass {
   const SurfacePixel* tap_at(int x, int y, PixelOffset offset) const;
   void add_tap(int x, int y, std::span<const PixelOffset> offsets, int side, const TapWeights& weights,
                std::size_t pair);
+  void add_readings(std::span<const Reading> readings, const TapWeights& weights, std::size_t pair, std::size_t term,
+                    int c);
   Outcome finished(const Outcome& values, std::span<const Term> terms) const;
 
   Axis axis_;
@@ -242,23 +244,28 @@ void Pass::add_tap(int x, int y, std::span<const PixelOffset> offsets, int side,
                         y + offset[1]});
   }
   for (std::size_t t = 0; t < sums_.size(); ++t) {
-    for (int c = 0; c < 3; ++c) {
-      WeightParts parts{};
-      Bounded light;
-      bool has_light = false;
-      for (const Reading& reading : readings) {
-        const WeightParts its = reading.is_there ? weights.tap(reading.place, pair, t, c) : WeightParts{};
-        const bool is_first = &reading == &readings.front();
-        for (std::size_t i = 0; i < parts.size(); ++i) parts[i] = is_first ? its[i] : including(parts[i], its[i]);
-        if (!reading.is_there) continue;
-        const Bounded its_light = inputs_[t].at(reading.x, reading.y, c);
-        light = has_light ? including(light, its_light) : its_light;
-        has_light = true;
-      }
-      for (const Bounded& part : parts) {
-        if (has_light && !is_exactly(part, 0)) sums_[t][c].add(part, light);
-      }
-    }
+    for (int c = 0; c < 3; ++c) add_readings(readings, weights, pair, t, c);
+  }
+}
+
+/// One tap in one channel of one term, which may have fallen on any of these.
+void Pass::add_readings(std::span<const Reading> readings, const TapWeights& weights, std::size_t pair,
+                        std::size_t term, int c) {
+  WeightParts parts{};
+  Bounded light;
+  bool has_light = false;
+  for (const Reading& reading : readings) {
+    const WeightParts its = reading.is_there ? weights.tap(reading.place, pair, term, c) : WeightParts{};
+    const bool is_first = &reading == &readings.front();
+    for (std::size_t i = 0; i < parts.size(); ++i) parts[i] = is_first ? its[i] : including(parts[i], its[i]);
+    if (!reading.is_there) continue;
+    const Bounded its_light = inputs_[term].at(reading.x, reading.y, c);
+    light = has_light ? including(light, its_light) : its_light;
+    has_light = true;
+  }
+  if (!has_light) return;
+  for (const Bounded& part : parts) {
+    if (!is_exactly(part, 0)) sums_[term][c].add(part, light);
   }
 }
 
