@@ -13,9 +13,10 @@ namespace oracle = dermis::oracle;
 namespace {
 
 struct Tally {
-  double worst = 0;          ///< error / bound
-  double largest_bound = 0;  ///< relative to the largest value
-  long changed = 0;          ///< values that differ from the light
+  double worst = 0;  ///< error / bound
+  long values = 0;
+  long loose = 0;    ///< of which the bound is more than a hundredth of the largest one of the frame
+  long changed = 0;  ///< that differ from the light
 };
 
 void compare(const GuardedImage& output, const oracle::Picture& expected, const oracle::Picture& bound, Tally& tally) {
@@ -28,7 +29,8 @@ void compare(const GuardedImage& output, const oracle::Picture& expected, const 
         const bool half = output.layout().format == dermis::Format::f16;
         const double allowed = bound(x, y, c) + (half ? half_rounding(value) : 0);
         const double error = std::abs(output.get(x, y, c) - value);
-        tally.largest_bound = std::max(tally.largest_bound, bound(x, y, c) / largest);
+        ++tally.values;
+        if (bound(x, y, c) > 0.01 * largest) ++tally.loose;
         if (!half) tally.worst = std::max(tally.worst, error / allowed);
         if (!(error <= allowed)) {
           CAPTURE(x, y, c, value, output.get(x, y, c), error, allowed);
@@ -77,8 +79,10 @@ TEST_CASE("kernels equal the oracle within float rounding", "[kernels]") {
       }
     }
   }
-  INFO("worst error / bound " << tally.worst << ", largest relative bound " << tally.largest_bound);
-  CHECK(tally.changed > 10000);      // the filter did something
-  CHECK(tally.worst > 1e-3);         // the bound is of the order of the errors
-  CHECK(tally.largest_bound < 0.1);  // and says something, even where terms of high rank cancel
+  INFO("worst error / bound " << tally.worst << ", " << tally.loose << " of " << tally.values << " bounds are loose");
+  CHECK(tally.changed > 10000);  // the filter did something
+  CHECK(tally.worst > 1e-3);     // the bound is of the order of the errors
+  // And it says something, but where terms of high rank cancel, or where float32 cannot tell which column a tap of the
+  // vertical pass falls on, so that the bound admits both.
+  CHECK(tally.loose < tally.values / 500);
 }
