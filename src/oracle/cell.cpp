@@ -80,12 +80,12 @@ struct Cells::Surroundings {
   std::array<int, 2> size_px;  ///< columns and rows of pixels that lie in the frame
 };
 
-Cells::Surroundings Cells::surroundings(Axis axis, int column, int row, const View& view) const {
+Cells::Surroundings Cells::surroundings(Axis axis, int column, int row, const Extent& extent) const {
   std::array<int, 2> first{column, row};
   std::array<int, 2> last{column, row};
   const std::array<int, 2> frame_cells{columns_, rows_};
   for (const Axis i : {horizontal, vertical}) {
-    const int reach_cells = i == axis ? view.along_cells : view.side_cells;
+    const int reach_cells = i == axis ? extent.along_cells : extent.side_cells;
     first[i] = std::max(first[i] - reach_cells, 0);
     last[i] = std::min(last[i] + reach_cells, frame_cells[i] - 1);
   }
@@ -120,7 +120,7 @@ struct Cells::Variation {
 
 Cells::Variation Cells::variation(Axis axis, int column, int row, const ShearChoice& shear, const Range& depth_mm,
                                   const std::array<Range, 2>& step_mm) const {
-  const oracle::View& view = surface_.view();
+  const View& view = surface_.view();
   const std::array<int, 2> corner_px{cell_px * column, cell_px * row};
   const Bounded side = shear.columns();
   const Range& along_mm = step_mm[axis];
@@ -144,7 +144,7 @@ Cells::Variation Cells::variation(Axis axis, int column, int row, const ShearCho
 ShearChoice Cells::shear(int column, int row) const {
   if (!surface_.is_sheared()) return {};
   const Cell& cell = at(column, row);
-  const oracle::View& view = surface_.view();
+  const View& view = surface_.view();
   const std::array<int, 2> corner_px{cell_px * column, cell_px * row};
   std::array<Tangent, 2> tangents;
   for (const Axis axis : {horizontal, vertical}) {
@@ -158,10 +158,10 @@ ShearChoice Cells::shear(int column, int row) const {
   return whole_shear(shear_between(tangents[horizontal], tangents[vertical]));
 }
 
-void Cells::add_kinds(Axis axis, int column, int row, const View& view, std::vector<CellKind>& kinds) const {
+void Cells::add_kinds(Axis axis, int column, int row, const Extent& extent, std::vector<CellKind>& kinds) const {
   const Cell& cell = at(column, row);
-  const Surroundings near = surroundings(axis, column, row, view);
-  const Variation within_reach = variation(axis, column, row, view.shear, near.depth_mm, near.step_mm);
+  const Surroundings near = surroundings(axis, column, row, extent);
+  const Variation within_reach = variation(axis, column, row, extent.shear, near.depth_mm, near.step_mm);
   const Bounded length = square_root(within_reach.squared_length);
   Bounded largest_range = length;
   for (const Axis i : {horizontal, vertical}) {
@@ -179,14 +179,14 @@ void Cells::add_kinds(Axis axis, int column, int row, const View& view, std::vec
   const auto add = [&](Shape shape) {
     switch (shape) {
       case Shape::flat:
-        kinds.push_back({shape, exact(1) / length, view.shear});
+        kinds.push_back({shape, exact(1) / length, extent.shear});
         break;
       case Shape::smooth:
         kinds.push_back(
             {shape,
              exact(1) /
-                 square_root(variation(axis, column, row, view.shear, cell.depth_mm, cell.step_mm).squared_length),
-             view.shear});
+                 square_root(variation(axis, column, row, extent.shear, cell.depth_mm, cell.step_mm).squared_length),
+             extent.shear});
         break;
       case Shape::curved:
         kinds.push_back({shape, cell.footprint[axis].bounded(), {}});
@@ -225,13 +225,13 @@ Cells::Reach Cells::reach(Axis axis, const Cell& cell) const {
 }
 
 /// What lies within r pixels lies in the ceil(r / 16) cells to either side.
-std::vector<Cells::View> Cells::views(Axis axis, int column, int row) const {
+std::vector<Cells::Extent> Cells::extents(Axis axis, int column, int row) const {
   const Reach reach_px = reach(axis, at(column, row));
   const ShearChoice shears = axis == vertical ? shear(column, row) : ShearChoice{};
   const int frame_px = std::max(surface_.width(), surface_.height());
-  std::vector<View> all;
-  const auto add = [&](const View& view) {
-    if (std::find(all.begin(), all.end(), view) == all.end()) all.push_back(view);
+  std::vector<Extent> all;
+  const auto add = [&](const Extent& extent) {
+    if (std::find(all.begin(), all.end(), extent) == all.end()) all.push_back(extent);
   };
   const auto add_sides = [&](int along_px) {
     along_px = std::min(along_px, frame_px);
@@ -249,7 +249,7 @@ std::vector<CellKind> Cells::kinds(Axis axis, int column, int row) const {
   const Cell& cell = at(column, row);
   if (!may_be_flat_) return {{Shape::curved, cell.footprint[axis].bounded(), {}}};
   std::vector<CellKind> kinds;
-  for (const View& view : views(axis, column, row)) add_kinds(axis, column, row, view, kinds);
+  for (const Extent& extent : extents(axis, column, row)) add_kinds(axis, column, row, extent, kinds);
   return kinds;
 }
 

@@ -99,12 +99,12 @@ class Cells {
   };
 
   /// What is looked at around a cell, and along which shear.
-  struct View {
+  struct Extent {
     int along_cells;  ///< to either side along the pass
     int side_cells;   ///< across it
     ShearChoice shear;
 
-    bool operator==(const View&) const = default;
+    bool operator==(const Extent&) const = default;
   };
 
   struct Surroundings;
@@ -112,13 +112,13 @@ class Cells {
   void add_pixel(Cell& cell, int x, int y) const;
   Reach reach(Axis axis, const Cell& cell) const;
   const Cell& at(int column, int row) const { return cells_[static_cast<std::size_t>(row) * columns_ + column]; }
-  Surroundings surroundings(Axis axis, int column, int row, const View& view) const;
+  Surroundings surroundings(Axis axis, int column, int row, const Extent& extent) const;
   struct Variation;
   Variation variation(Axis axis, int column, int row, const ShearChoice& shear, const Range& depth_mm,
                       const std::array<Range, 2>& step_mm) const;
   ShearChoice shear(int column, int row) const;
-  std::vector<View> views(Axis axis, int column, int row) const;
-  void add_kinds(Axis axis, int column, int row, const View& view, std::vector<CellKind>& kinds) const;
+  std::vector<Extent> extents(Axis axis, int column, int row) const;
+  void add_kinds(Axis axis, int column, int row, const Extent& extent, std::vector<CellKind>& kinds) const;
   static Decision is_at_most(Bounded a, Bounded b);
   static Decision both(Decision a, Decision b);
 

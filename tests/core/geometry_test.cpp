@@ -1,6 +1,5 @@
 // How far the passes are from the surface integral where a surface is curved, tilted and broken.
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -21,7 +20,6 @@ using dermis::Material;
 using dermis::Method;
 using dermis::Options;
 using dermis::Plan;
-using dermis::TapsDesign;
 
 namespace {
 
