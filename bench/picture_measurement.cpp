@@ -76,15 +76,15 @@ Subject load_subject(const std::filesystem::path& path, double mm_per_unit, cons
                      const std::vector<std::string>& names) {
   const exr::Picture picture = exr::Picture::read(path);
   const exr::Roles roles = exr::find_roles(picture);
-  for (const exr::Role role : {exr::Role::light, exr::Role::depth, exr::Role::material})
-    exr::require(picture, roles, role);
+  for (const exr::Role role : {exr::Role::light, exr::Role::material}) exr::require(picture, roles, role);
+  const exr::FoundCamera camera = exr::find_camera(picture, roles);
   Subject subject{.name = path.stem().string(),
                   .width = picture.width(),
                   .height = picture.height(),
-                  .camera = exr::find_camera(picture, roles).camera,
+                  .camera = camera.camera,
                   .mm_per_unit = mm_per_unit,
                   .light = exr::load(picture, roles, exr::Role::light),
-                  .depth = exr::load(picture, roles, exr::Role::depth),
+                  .depth = exr::load_depth(picture, roles, camera),
                   .ids = exr::load(picture, roles, exr::Role::material),
                   .materials = {},
                   .material_names = names};

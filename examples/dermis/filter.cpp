@@ -240,7 +240,7 @@ Input read_input(const FilterArguments& arguments, const std::vector<NamedProfil
   require_roles(picture, report.roles, profiles, report.options);
   if (!arguments.preview.empty()) exr::require(picture, report.roles, Role::beauty);
   report.camera = exr::find_camera(picture, report.roles, arguments.picture.camera);
-  input.loaded = load_frame(picture, report.roles, profiles);
+  input.loaded = load_frame(picture, report.roles, report.camera, profiles);
   report.materials = report_materials(profiles, input.loaded, report.camera.camera, *arguments.picture.mm_per_unit);
   return input;
 }

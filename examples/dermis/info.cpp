@@ -80,7 +80,7 @@ Reach reach_of(const NamedProfile& named, const SurfacePixels& pixels, const Inf
 }
 
 void find_surfaces(Info& info, const std::vector<NamedProfile>& profiles, const std::optional<double>& mm_per_unit) {
-  const std::vector<float> depth = exr::load(info.picture, info.roles, Role::depth);
+  const std::vector<float> depth = exr::load_depth(info.picture, info.roles, info.camera.value_or(exr::FoundCamera{}));
   MaterialCounts counts = count_materials(exr::load(info.picture, info.roles, Role::material), depth);
   info.pixels_without_id = counts.without_id;
   for (const NamedProfile& named : profiles) {
@@ -114,7 +114,7 @@ std::optional<Memory> find_memory(const Info& info, const std::vector<NamedProfi
         profiles.empty() ? std::vector<NamedProfile>{{{}, presets().front().name, presets().front().profile}}
                          : profiles;
     require_roles(info.picture, info.roles, asked, Options{});
-    const LoadedFrame loaded = load_frame(info.picture, info.roles, asked);
+    const LoadedFrame loaded = load_frame(info.picture, info.roles, info.camera.value_or(exr::FoundCamera{}), asked);
     const Plan plan(Device::open(), materials_of(asked), FrameDescription::of(loaded.frame()));
     std::size_t images = bytes_of_images(loaded);
     if (info.roles.has(Role::beauty)) {

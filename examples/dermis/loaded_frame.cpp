@@ -12,13 +12,16 @@ namespace {
 
 using exr::Role;
 
-std::vector<float> load_values(const exr::Picture& picture, const exr::Roles& roles, Role role, std::size_t channels) {
-  std::vector<float> values = exr::load(picture, roles, role);
+std::vector<float> checked(std::vector<float> values, const exr::Picture& picture, Role role, std::size_t channels) {
   const std::size_t pixels = static_cast<std::size_t>(picture.width()) * static_cast<std::size_t>(picture.height());
   if (!values.empty() && values.size() != pixels * channels)
     throw Error(ErrorCode::input_unsupported, fmt::format("role {}", exr::name_of(role)),
                 fmt::format("{} channels", values.size() / pixels), std::to_string(channels));
   return values;
+}
+
+std::vector<float> load_values(const exr::Picture& picture, const exr::Roles& roles, Role role, std::size_t channels) {
+  return checked(exr::load(picture, roles, role), picture, role, channels);
 }
 
 Image image_of(const std::vector<float>& values) { return {.host = values.empty() ? nullptr : values.data()}; }
@@ -38,18 +41,18 @@ Frame LoadedFrame::frame() const {
 void require_roles(const exr::Picture& picture, const exr::Roles& roles, const std::vector<NamedProfile>& profiles,
                    const Options& options) {
   exr::require(picture, roles, Role::light);
-  exr::require(picture, roles, Role::depth);
+  if (!roles.has(Role::position)) exr::require(picture, roles, Role::depth);
   if (options.lighting == Lighting::raw || options.albedo_mix > 0 || any_follows_albedo(profiles))
     exr::require(picture, roles, Role::albedo);
   if (have_ids(profiles)) exr::require(picture, roles, Role::material);
 }
 
-LoadedFrame load_frame(const exr::Picture& picture, const exr::Roles& roles,
+LoadedFrame load_frame(const exr::Picture& picture, const exr::Roles& roles, const exr::FoundCamera& camera,
                        const std::vector<NamedProfile>& profiles) {
   LoadedFrame loaded{picture.width(), picture.height(), {}, {}, {}, {}, {}};
   loaded.light = load_values(picture, roles, Role::light, 3);
   loaded.albedo = load_values(picture, roles, Role::albedo, 3);
-  loaded.depth = load_values(picture, roles, Role::depth, 1);
+  loaded.depth = checked(exr::load_depth(picture, roles, camera), picture, Role::depth, 1);
   loaded.mask = load_values(picture, roles, Role::mask, 1);
   if (have_ids(profiles)) loaded.material = load_values(picture, roles, Role::material, 1);
   return loaded;

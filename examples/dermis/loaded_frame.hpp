@@ -13,9 +13,9 @@ namespace dermis::program {
 struct LoadedFrame {
   int width = 0;
   int height = 0;
-  std::vector<float> light;     ///< RGB
-  std::vector<float> albedo;    ///< RGB, or empty
-  std::vector<float> depth;     ///< or empty
+  std::vector<float> light;   ///< RGB
+  std::vector<float> albedo;  ///< RGB, or empty
+  std::vector<float> depth;
   std::vector<float> material;  ///< or empty
   std::vector<float> mask;      ///< or empty
 
@@ -27,8 +27,9 @@ struct LoadedFrame {
 void require_roles(const exr::Picture& picture, const exr::Roles& roles, const std::vector<NamedProfile>& profiles,
                    const Options& options);
 
-/// The roles that the picture has; ids only if the profiles tell materials apart.
-/// Throws Error(input_unsupported) if a role has the wrong number of channels.
-LoadedFrame load_frame(const exr::Picture& picture, const exr::Roles& roles, const std::vector<NamedProfile>& profiles);
+/// The roles that the picture has, and the depth of its positions if it has no other; ids only if the profiles tell
+/// materials apart. Throws Error(input_unsupported) if a role has the wrong number of channels.
+LoadedFrame load_frame(const exr::Picture& picture, const exr::Roles& roles, const exr::FoundCamera& camera,
+                       const std::vector<NamedProfile>& profiles);
 
 }  // namespace dermis::program

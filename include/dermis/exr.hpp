@@ -121,17 +121,30 @@ struct CameraHint {
   std::optional<double> orthographic_px_per_unit = {};
 };
 
+/// The depth of a position P: direction . P + offset, scene units.
+struct ViewAxis {
+  std::array<double, 3> direction;  ///< unit length, world space
+  double offset;
+};
+
 /// A camera and where it comes from.
 struct FoundCamera {
-  Camera camera;              ///< in pixels of the data window
-  std::string source;         ///< "--fov", "--focal-px", "--px-per-unit" or "position and depth"
-  double residual_units = 0;  ///< largest distance of a recovered point from its position, if recovered
+  Camera camera;                      ///< in pixels of the data window
+  std::string source;                 ///< "--fov", "--focal-px", "--px-per-unit", "position and depth" or "position"
+  double residual_units = 0;          ///< largest distance of a recovered point from its position, if recovered
+  std::optional<ViewAxis> axis = {};  ///< if the picture has positions and no depth
 };
 
 /// The camera of a picture: from the hint, else by linear least squares from position and depth: P = C + Z x u + Z y v
 /// + Z w (perspective) or P = C + x u + y v + Z n (orthographic), whichever fits; u and v give both focal lengths, w
 /// the centre. Pixels of the background and those that the fit finds off by more than a pixel (antialiased edges) are
-/// left out. Throws Error(role_missing) if neither works, Error(usage) if the hint is not finite or out of range.
+/// left out. Of a picture that has positions and no depth, the view axis is found first, from where the positions lie
+/// on the picture (Hartley and Zisserman 2004, algorithm 7.1), whatever the hint. Throws Error(role_missing) if neither
+/// works, Error(usage) if the hint is not finite or out of range.
 FoundCamera find_camera(const Picture& picture, const Roles& roles, const CameraHint& hint = {});
+
+/// The depth of each pixel: that of the picture, else along the view axis, and infinite where a position is not finite,
+/// or all zeros (what Cycles writes where there is nothing). Empty if there is neither.
+std::vector<float> load_depth(const Picture& picture, const Roles& roles, const FoundCamera& camera);
 
 }  // namespace dermis::exr

@@ -204,6 +204,67 @@ TEST_CASE("background and edge pixels do not bend the camera") {
   }
 }
 
+TEST_CASE("positions without depth give the camera and the depth") {
+  Random random(28);
+  for (int i = 0; i < 20; ++i) {
+    const bool is_lens = i % 2 == 0;
+    Scene scene = random_scene(random, is_lens ? Camera::Projection::perspective : Camera::Projection::orthographic);
+    // Nothing is seen at some pixels, and wrong things at others.
+    std::vector<bool> is_seen(static_cast<std::size_t>(scene.width * scene.height), true);
+    scene.spoil = [&](int x, int y, float&, Position& position) {
+      const int die = random.integer(0, 19);
+      if (die == 0) position = {0, 0, 0};
+      if (die == 1) position[1] = random.coin() ? NAN : INFINITY;
+      if (die == 2) {
+        for (float& value : position) value = static_cast<float>(random.uniform(-20, 20));
+      }
+      is_seen[static_cast<std::size_t>(y * scene.width + x)] = die > 2;
+    };
+    const Picture picture = picture_of(scene);
+    Roles roles = dermis::exr::find_roles(picture);
+    roles[Role::depth].clear();
+    const FoundCamera found = find_camera(picture, roles);
+    require_near(found.camera, scene.camera, tolerance);
+    REQUIRE(found.source == "position");
+
+    const std::vector<float> depth = dermis::exr::load_depth(picture, roles, found);
+    const double reach = is_lens ? 0 : scene.depth(0, 0) - depth[0];  // nothing tells where parallel rays begin
+    for (std::size_t k = 0; k < depth.size(); ++k) {
+      if (!is_seen[k]) continue;
+      const double expected = scene.depth(static_cast<int>(k) % scene.width, static_cast<int>(k) / scene.width);
+      REQUIRE(depth[k] > 0);
+      // A longer lens farther away sees nearly the same: depth is known 1 / relief (10 to 50) times less well than the
+      // focal length.
+      if (is_seen[0]) REQUIRE(std::abs(depth[k] + reach - expected) < 50 * tolerance * expected);
+    }
+    if (!is_seen[0]) continue;
+
+    const FoundCamera told = find_camera(picture, roles, {.focal_px = 123});
+    REQUIRE(told.source == "--focal-px");
+    REQUIRE(told.camera.scale_x == 123);
+    REQUIRE(dermis::exr::load_depth(picture, roles, told) == depth);
+  }
+}
+
+TEST_CASE("positions on one plane do not tell a depth") {
+  Random random(29);
+  for (const auto projection : {Camera::Projection::perspective, Camera::Projection::orthographic}) {
+    Scene scene = random_scene(random, projection);
+    scene.camera = projection == Camera::Projection::perspective ? Camera::perspective(120, 120, 48, 32)
+                                                                 : Camera::orthographic(10, 10);
+    scene.depth = [&](int x, int y) {
+      return projection == Camera::Projection::perspective ? 5 / (1 + 0.002 * x - 0.003 * y) : 5 + 0.02 * x - 0.03 * y;
+    };
+    const Picture picture = picture_of(scene);
+    Roles roles = dermis::exr::find_roles(picture);
+    roles[Role::depth].clear();
+    const Failure failure = failure_of([&] { find_camera(picture, roles); });
+    REQUIRE(failure.code == ErrorCode::role_missing);
+    REQUIRE(failure.says("one plane"));
+    REQUIRE(failure.says("a depth pass"));
+  }
+}
+
 TEST_CASE("a large picture is sampled") {
   Random random(25);
   Scene scene = random_scene(random, Camera::Projection::perspective);

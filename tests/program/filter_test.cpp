@@ -160,6 +160,22 @@ TEST_CASE("the camera found from position and depth is the one that was there") 
   CHECK(relative_l2(folder / "found.exr", folder / "told.exr", "ViewLayer.sss") <= 1e-4);
 }
 
+TEST_CASE("positions alone, and depth alone, give the same picture") {
+  const TemporaryFolder folder;
+  const MadeScene scene = make_scene(folder / "in.exr", "sphere", 65, 47, 3);
+  const Words material = {"--material", "1=skin"};
+  run_well(filter_arguments(scene, folder / "both.exr", material));
+  PictureCopy(scene.path).without("ViewLayer.Position").write(folder / "depth-in.exr");
+  PictureCopy(scene.path).without("ViewLayer.Depth").write(folder / "position-in.exr");
+  run_well(filter_arguments({folder / "depth-in.exr", scene.camera}, folder / "depth.exr", material));
+  CHECK(relative_l2(folder / "depth.exr", folder / "both.exr", "ViewLayer.sss") == 0);
+  run_well({"filter", folder / "position-in.exr", "-o", folder / "position.exr", "--mm-per-unit", "1", "--material",
+            "1=skin"});
+  // The camera that is found is right to 1e-4, and so is the size of the kernel; the light changes by less.
+  CHECK(relative_l2(folder / "position.exr", folder / "both.exr", "ViewLayer.sss") <= 1e-4);
+  CHECK(relative_l2(folder / "position.exr", folder / "position-in.exr", "ViewLayer.Combined") > 1e-3);
+}
+
 TEST_CASE("an orthographic scene is filtered with pixels per unit") {
   const TemporaryFolder folder;
   const MadeScene scene = make_scene(folder / "in.exr", "step", 48, 20, 4, true);
