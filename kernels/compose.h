@@ -9,12 +9,20 @@ typedef struct {
   int zeroes_bad;
 } Outputs;
 
+#if HAS_MATTE
+// `share` of what comes after, the rest of what was before.
+static inline vrgb blended(vrgb before, vrgb after, vfloat share) {
+  const vrgb more = {after.r - before.r, after.g - before.g, after.b - before.b};
+  return select_rgb(sum_rgb(before, times(more, share)), after, AS_MASK(share >= 1.0f));
+}
+#endif
+
 // `after`: the light after scattering; not looked at where a pixel takes none. `all_finite`: all that is read is.
 SHARED void compose(const struct FrameParams* f, const Inputs* in, const InputRows* rows, const Outputs* out,
                     vrgb after, int all_finite, int x, int y) {
   const vint inside = AS_MASK(x + int_lane_numbers() < (vint)(f->width));
   const vint m = load_bytes(rows->surface + x);
-  if (all_finite && !out->writes_result && !any_bit(AS_MASK(m == 0) | AS_MASK((m & NARROW_BIT) != 0))) {
+  if (!HAS_MATTE && all_finite && !out->writes_result && !any_bit(AS_MASK(m == 0) | AS_MASK((m & NARROW_BIT) != 0))) {
     if (out->writes_scattered) write_rgb(out->scattered, &out->scattered_at, x, y, after, inside);
     return;
   }
@@ -24,6 +32,9 @@ SHARED void compose(const struct FrameParams* f, const Inputs* in, const InputRo
   const vint bad = bad_lanes(m, input, albedo, before);
   const vint touched = AS_MASK(m != 0) & AS_MASK((m & NARROW_BIT) == 0) & ~bad;
   const vint zeroed = out->zeroes_bad ? bad : (vint)(0);
+#if HAS_MATTE
+  after = blended(before, after, read_values(rows->matte, x));
+#endif
   if (out->writes_result) {
     copy_rgb(out->beauty, &out->beauty_at, out->result, &out->result_at, f->width, x, y, inside & ~touched);
     if (any_bit(touched)) {

@@ -19,9 +19,9 @@ constant float weights_8[8] = {0.0506142681f, 0.111190517f, 0.156853323f, 0.1813
 #define NEAR_2 6
 
 // A work-item has a run of `columns` pixels of a row. geometry receives three planes: depth slopes in x and y, mm per
-// px, and the area of the pixel's patch, mm^2.
+// px, and the area of the pixel's patch, mm^2, times what it counts for.
 kernel void slopes(struct FrameParams f, struct WindowParams window, global uchar* memory, long plane,
-                   global float* geometry, int columns) {
+                   global const uchar* matte, struct ImageParams matte_at, global float* geometry, int columns) {
   const Window w = window_in(window, plane, 1, memory);
   const int y = get_global_id(1);
   const int x_begin = get_global_id(0) * columns;
@@ -35,7 +35,11 @@ kernel void slopes(struct FrameParams f, struct WindowParams window, global ucha
     const Tangent normal = {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
     store_floats(geometry + at, slope_x);
     store_floats(geometry + plane + at, slope_y);
-    store_floats(geometry + 2 * plane + at, sqrt(squared_length(normal)));
+    vfloat area = sqrt(squared_length(normal));
+#if HAS_MATTE
+    area *= share_of_surface(row_of(matte, &matte_at, f.width, y, 0), x);
+#endif
+    store_floats(geometry + 2 * plane + at, area);
   }
 }
 

@@ -39,6 +39,7 @@ kernel void fingerprint(struct FrameParams f, int cells_per_item,               
                         global const uchar* depth, struct ImageParams depth_at,        //
                         global const uchar* material, struct ImageParams material_at,  //
                         global const uchar* mask, struct ImageParams mask_at,          //
+                        global const uchar* matte, struct ImageParams matte_at,        //
                         global ulong* fingerprints, int is_first, global uchar* changed) {
   const int cell_y = get_global_id(1);
   const int first = get_global_id(0) * cells_per_item;
@@ -59,6 +60,9 @@ kernel void fingerprint(struct FrameParams f, int cells_per_item,               
 #endif
 #if HAS_MASK
       state = mixed_channel(state, mask, &mask_at, f.width, x, y, height, 0);
+#endif
+#if HAS_MATTE
+      state = mixed_channel(state, matte, &matte_at, f.width, x, y, height, 0);
 #endif
     }
     const size_t cell = (size_t)cell_y * f.cells_x + cell_x;

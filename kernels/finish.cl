@@ -6,12 +6,12 @@
 // without scattering are left alone unless `copies`; not looked at if `copies`.
 kernel void finish(struct FrameParams f, global const uchar* surface, global const uchar* light,
                    struct ImageParams light_at, global const uchar* albedo, struct ImageParams albedo_at,
-                   global const uchar* beauty, struct ImageParams beauty_at, global uchar* scattered,
-                   struct ImageParams scattered_at, int writes_scattered, global uchar* result,
-                   struct ImageParams result_at, int writes_result, int zeroes_bad, int copies,
-                   global const float* held, global const uchar* kinds, global const int* counters,
-                   global const struct CellPasses* passes, int columns) {
-  const Inputs in = {light, albedo, 0, 0, light_at, albedo_at, light_at, light_at, surface};
+                   global const uchar* matte, struct ImageParams matte_at, global const uchar* beauty,
+                   struct ImageParams beauty_at, global uchar* scattered, struct ImageParams scattered_at,
+                   int writes_scattered, global uchar* result, struct ImageParams result_at, int writes_result,
+                   int zeroes_bad, int copies, global const float* held, global const uchar* kinds,
+                   global const int* counters, global const struct CellPasses* passes, int columns) {
+  const Inputs in = {light, albedo, 0, 0, matte, light_at, albedo_at, light_at, light_at, matte_at, surface};
   const Outputs out = {beauty,    scattered,        result,        beauty_at, scattered_at,
                        result_at, writes_scattered, writes_result, zeroes_bad};
   const int y = get_global_id(1);

@@ -6,8 +6,8 @@
 
 // The images that are read.
 typedef struct {
-  global const uchar *light, *albedo, *depth, *mask;
-  struct ImageParams light_at, albedo_at, depth_at, mask_at;
+  global const uchar *light, *albedo, *depth, *mask, *matte;
+  struct ImageParams light_at, albedo_at, depth_at, mask_at, matte_at;
   global const uchar* surface;  // what survey wrote
 } Inputs;
 
@@ -22,7 +22,7 @@ static inline size_t surface_at(const struct FrameParams* f, int x, int y) {
 // The rows of a frame that are read.
 typedef struct {
   RgbRow light, albedo;
-  Row depth, mask;
+  Row depth, mask, matte;
   global const uchar* surface;
 } InputRows;
 
@@ -37,6 +37,9 @@ static inline InputRows input_rows(const struct FrameParams* f, const Inputs* in
 #endif
 #if HAS_MASK
   rows.mask = row_of(in->mask, &in->mask_at, f->width, y, 0);
+#endif
+#if HAS_MATTE
+  rows.matte = row_of(in->matte, &in->matte_at, f->width, y, 0);
 #endif
   rows.surface = in->surface + (size_t)y * f->stride + PADDING;
   return rows;

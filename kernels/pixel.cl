@@ -4,13 +4,17 @@
 #include "scatter.h"
 
 kernel void segments(struct FrameParams f, struct WindowParams window, global uchar* memory, long plane,
-                     global float* down_segment) {
+                     global const uchar* matte, struct ImageParams matte_at, global float* down_segment) {
   const Window w = window_in(window, plane, 1, memory);
   const int x = get_global_id(0);
   const int y = get_global_id(1);
   const size_t at = pixel_at(&w, x, y);
-  store_floats(w.segment + at, segment_length(&f, &w, x, y, 0));
-  store_floats(down_segment + at, segment_length(&f, &w, x, y, 1));
+  vfloat share = (vfloat)(1.0f);
+#if HAS_MATTE
+  share = share_of_surface(row_of(matte, &matte_at, f.width, y, 0), x);
+#endif
+  store_floats(w.segment + at, share * segment_length(&f, &w, x, y, 0));
+  store_floats(down_segment + at, share * segment_length(&f, &w, x, y, 1));
 }
 
 #define SCATTER_ARGUMENTS                                                                                         \

@@ -1,4 +1,4 @@
-// How an albedo or a mask scales the width of the profile.
+// How much of a pixel its material covers, and how an albedo or a mask scales the width of the profile.
 #include "image.h"
 
 // Christensen and Burley 2015, eq. 6.
@@ -6,6 +6,14 @@ static inline vfloat shape_factor(vfloat albedo) {
   const vfloat a = clamp(albedo, (vfloat)(0.0f), (vfloat)(1.0f));
   return 1.9f - a + 3.5f * (a - 0.8f) * (a - 0.8f);
 }
+
+#if HAS_MATTE
+// What pixels with a material count for: m of each is covered by it, and m of the light there is its own.
+static inline vfloat share_of_surface(Row matte, int x) {
+  const vfloat m = fmin(read_values(matte, x), (vfloat)(1.0f));
+  return m * m;
+}
+#endif
 
 // The factor for pixels of one material.
 static inline vrgb width_factor(global const struct MaterialParams* its, vrgb albedo, vfloat mask) {

@@ -12,6 +12,9 @@
 typedef struct {
   vint material;  // as a byte of the plane
   vfloat depth;   // mm; 0 where there is no material
+#if HAS_MATTE
+  vint partial;  // whether the material covers only a part
+#endif
 #if PIXEL_WIDTH
   vrgb k;
 #endif
@@ -38,8 +41,8 @@ static inline vint find_material(vfloat id, global const struct MaterialParams* 
 
 // Only the images that have a role here; light and the outputs have none.
 typedef struct {
-  global const uchar *albedo, *depth, *material, *mask;
-  struct ImageParams albedo_at, depth_at, material_at, mask_at;
+  global const uchar *albedo, *depth, *material, *mask, *matte;
+  struct ImageParams albedo_at, depth_at, material_at, mask_at, matte_at;
 } SurveyInputs;
 
 // Values of a row that is direct: they are floats side by side, and V of them in the frame.
@@ -48,7 +51,7 @@ FORCED_INLINE vfloat read_row_values(Row row, int x, const int direct) {
 }
 
 static inline int is_direct(const struct FrameParams* f, const SurveyInputs* in, int x) {
-#if PIXEL_WIDTH
+#if PIXEL_WIDTH || HAS_MATTE
   return 0;
 #endif
   int direct = x + V <= f->width;
@@ -100,6 +103,11 @@ FORCED_INLINE PixelRow read_row(const struct FrameParams* f, const SurveyInputs*
 #endif
   }
 #endif
+#if HAS_MATTE
+  const vfloat share = read_values(row_of(in->matte, &in->matte_at, f->width, y, 0), x);
+  row.material &= AS_MASK(share > 0.0f) & AS_MASK(isfinite(share));
+  row.partial = AS_MASK(row.material != 0) & AS_MASK(share < 1.0f);
+#endif
   row.depth = keep(AS_MASK(row.material != 0), row.depth);
   return row;
 }
@@ -116,6 +124,9 @@ static inline void fetch_row_ahead(const struct FrameParams* f, const SurveyInpu
   fetch_ahead(depth.at, depth.pixel_stride, later_x);
 #endif
 }
+
+// No surface that is as deep counts as unbroken.
+#define BROKEN_MM 1e30f
 
 // fmin and fmax of numbers, without their care for NaN.
 FORCED_INLINE vfloat lower(vfloat a, vfloat b) { return select(b, a, AS_MASK(a < b)); }
@@ -150,7 +161,7 @@ static inline int count_lanes(vint mask) {
 typedef struct {
   Range depth, along_x, along_y;
   vfloat size_x, size_y;  // smallest ones of pixels that scatter, mm
-  vint scattered, narrow;
+  vint scattered, narrow, partial;
   uint scattering[4];  // as in CellParams
 } Seen;
 
@@ -203,6 +214,9 @@ static inline vint see_mixed_row(Seen* seen, const struct FrameParams* f, global
   const vfloat z = row->depth;
   const vint has_material = AS_MASK(m != 0);
   vint marked = m;
+#if HAS_MATTE
+  seen->partial |= row->partial;
+#endif
   if (!any_bit(has_material)) return marked;
   const vfloat size_x_mm = fma(z, (vfloat)(f->slope_x), (vfloat)(f->mm_per_px_x));
   const vfloat size_y_mm = fma(z, (vfloat)(f->slope_y), (vfloat)(f->mm_per_px_y));
@@ -246,8 +260,9 @@ static inline void write_cell(global struct CellParams* cell, const Seen* seen) 
   cell->narrow = count_lanes(seen->narrow);
 }
 
-// All rows of a cell as if it were of one material without gaps, and their material into the plane. Returns that
-// material, or -1 if it is not. With `direct` there is no call in the loop, before which registers would be saved.
+// All rows of a cell as if it were of one material without gaps that covers all pixels, and their material into the
+// plane. Returns that material, or -1 if it is not. With `direct` there is no call in the loop, before which registers
+// would be saved.
 FORCED_INLINE int see_cell(Seen* seen, const struct FrameParams* f, const SurveyInputs* in,
                            global const struct MaterialParams* materials, int x, int y, int height,
                            global uchar* surface, const int direct) {
@@ -259,6 +274,9 @@ FORCED_INLINE int see_cell(Seen* seen, const struct FrameParams* f, const Survey
     const PixelRow row = read_row(f, in, materials, x, y + i, direct);
     if (i == 0) first = (vint)(row.material.s0);
     others |= row.material ^ first;
+#if HAS_MATTE
+    others |= row.partial;
+#endif
     see_row(seen, row.depth, above_depth, i == 0);
     store_bytes(surface + (size_t)i * f->stride, row.material);
     above_depth = row.depth;
@@ -270,7 +288,8 @@ static inline void survey_cell(const struct FrameParams* f, const SurveyInputs* 
                                global const struct MaterialParams* materials, int cell_x, int cell_y,
                                global uchar* surface, global struct CellParams* cell) {
   const Range nothing = {(vfloat)(INFINITY), (vfloat)(-INFINITY)};
-  const Seen unseen = {nothing, nothing, nothing, nothing.low, nothing.low, (vint)(0), (vint)(0), {0, 0, 0, 0}};
+  const Seen unseen = {nothing,   nothing,   nothing,   nothing.low, nothing.low,
+                       (vint)(0), (vint)(0), (vint)(0), {0, 0, 0, 0}};
   const int x = cell_x * CELL;
   const int y = cell_y * CELL;
   const int height = min(CELL, f->height - y);
@@ -293,6 +312,11 @@ static inline void survey_cell(const struct FrameParams* f, const SurveyInputs* 
       above = row;
     }
     if (any_bit(seen.narrow)) cell->material = 0;
+    if (any_bit(seen.partial)) {
+      // What weighs less than it is long is looked at pixel by pixel, as a broken surface is.
+      seen.depth.low = (vfloat)(-BROKEN_MM);
+      seen.depth.high = (vfloat)(BROKEN_MM);
+    }
   }
   write_cell(cell, &seen);
 }
@@ -300,9 +324,9 @@ static inline void survey_cell(const struct FrameParams* f, const SurveyInputs* 
 kernel void survey(struct FrameParams f, int cells_per_item, global const struct MaterialParams* materials,
                    global const uchar* albedo, struct ImageParams albedo_at, global const uchar* depth,
                    struct ImageParams depth_at, global const uchar* material, struct ImageParams material_at,
-                   global const uchar* mask, struct ImageParams mask_at, global uchar* surface,
-                   global struct CellParams* cells) {
-  const SurveyInputs in = {albedo, depth, material, mask, albedo_at, depth_at, material_at, mask_at};
+                   global const uchar* mask, struct ImageParams mask_at, global const uchar* matte,
+                   struct ImageParams matte_at, global uchar* surface, global struct CellParams* cells) {
+  const SurveyInputs in = {albedo, depth, material, mask, matte, albedo_at, depth_at, material_at, mask_at, matte_at};
   const int cell_y = get_global_id(1);
   const int first = get_global_id(0) * cells_per_item;
   const int last = min(first + cells_per_item, f.cells_x);
@@ -460,7 +484,7 @@ static inline struct CellPass pass_over(const struct FrameParams* f, global cons
     return pass;
   }
   pass.footprint = axis == 0 ? own->finest_x : own->finest_y;
-#if !HAS_DEPTH && !PIXEL_WIDTH && !JITTER
+#if !HAS_DEPTH && !HAS_MATTE && !PIXEL_WIDTH && !JITTER
   pass.shape = SHAPE_FLAT;
 #elif !PIXEL_WIDTH && !JITTER
   // Footprints of flat and smooth cells may be a little larger.

@@ -32,14 +32,15 @@ static inline Sight scatter_rows(const Windows* w, const struct FrameParams* f, 
       const Columns loaded = widened(joined(bent, curved), V, across);  // slopes are taken from the next pixels, too
       load_surface_row(across, f, in, tables->materials, loaded.begin, loaded.end, y);
     }
-    measure_segments(across, f, 0, max(curved.begin, across->x_begin), min(curved.end, across->x_end), y);
+    measure_segments(across, f, in, 0, max(curved.begin, across->x_begin), min(curved.end, across->x_end), y);
     if (w->shape_down != SHAPE_FLAT) {
       // Slopes are taken from the next row, too.
       for (; next_surface < min(y + 2, down->y_end); ++next_surface) {
         load_surface_row(down, f, in, tables->materials, surface_down.begin, surface_down.end, next_surface);
       }
       if (y >= w->y_begin && y < w->y_end) {
-        measure_segments(down, f, 1, max(segments_down.begin, down->x_begin), min(segments_down.end, down->x_end), y);
+        measure_segments(down, f, in, 1, max(segments_down.begin, down->x_begin), min(segments_down.end, down->x_end),
+                         y);
       }
     }
 #if !JITTER
@@ -135,13 +136,14 @@ kernel void scatter(struct FrameParams f, global const struct MaterialParams* ma
                     global const uchar* albedo, struct ImageParams albedo_at,                               //
                     global const uchar* depth, struct ImageParams depth_at,                                 //
                     global const uchar* mask, struct ImageParams mask_at,                                   //
+                    global const uchar* matte, struct ImageParams matte_at,                                 //
                     global const uchar* beauty, struct ImageParams beauty_at,                               //
                     global uchar* scattered, struct ImageParams scattered_at, int writes_scattered,         //
                     global uchar* result, struct ImageParams result_at, int writes_result, int zeroes_bad,  //
                     int copies, int skips, int holds, global float* held, int reuses, global const uchar* changed,
                     global uchar* memory, long across_plane, long down_plane, int workers, global uchar* kinds,
                     global volatile int* counters) {
-  const Inputs in = {light, albedo, depth, mask, light_at, albedo_at, depth_at, mask_at, surface};
+  const Inputs in = {light, albedo, depth, mask, matte, light_at, albedo_at, depth_at, mask_at, matte_at, surface};
   const Outputs out = {beauty,    scattered,        result,        beauty_at, scattered_at,
                        result_at, writes_scattered, writes_result, zeroes_bad};
   const Tables tables = {materials,    terms,          rungs,     offsets, weights,

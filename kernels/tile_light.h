@@ -142,8 +142,16 @@ SHARED void load_surface_row(const Window* w, const struct FrameParams* f, const
   }
 }
 
-SHARED void measure_segments(const Window* w, const struct FrameParams* f, int axis, int x_begin, int x_end, int y) {
+SHARED void measure_segments(const Window* w, const struct FrameParams* f, const Inputs* in, int axis, int x_begin,
+                             int x_end, int y) {
+#if HAS_MATTE
+  const Row matte = row_of(in->matte, &in->matte_at, f->width, y, 0);
+#endif
   for (int x = x_begin; x < x_end; x += V) {
-    store_floats(w->segment + pixel_at(w, x, y), segment_length(f, w, x, y, axis));
+    vfloat length = segment_length(f, w, x, y, axis);
+#if HAS_MATTE
+    length *= share_of_surface(matte, x);
+#endif
+    store_floats(w->segment + pixel_at(w, x, y), length);
   }
 }

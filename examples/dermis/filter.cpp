@@ -237,10 +237,10 @@ Input read_input(const FilterArguments& arguments, const std::vector<NamedProfil
   Input input{exr::Picture::read(arguments.picture.path), {}};
   const exr::Picture& picture = input.picture;
   report.roles = exr::find_roles(picture, arguments.picture.roles, arguments.picture.layer);
-  require_roles(picture, report.roles, profiles, report.options);
+  require_roles(picture, report.roles, profiles, report.options, !arguments.cryptomatte.empty());
   if (!arguments.preview.empty()) exr::require(picture, report.roles, Role::beauty);
   report.camera = exr::find_camera(picture, report.roles, arguments.picture.camera);
-  input.loaded = load_frame(picture, report.roles, report.camera, profiles);
+  input.loaded = load_frame(picture, report.roles, report.camera, profiles, arguments.cryptomatte);
   report.materials = report_materials(profiles, input.loaded, report.camera.camera, *arguments.picture.mm_per_unit);
   return input;
 }

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "bad_pixels_argument.hpp"
+#include "cryptomatte_argument.hpp"
 #include "dermis/error.hpp"
 #include "number_argument.hpp"
 #include "profile_argument.hpp"
@@ -124,6 +125,7 @@ void add_filter_arguments(CLI::App& app, FilterArguments& arguments) {
   add_reading_arguments(app, arguments.picture);
   add_output_arguments(app, arguments);
   add_material_arguments(app, arguments.materials);
+  add_cryptomatte_argument(app, arguments.cryptomatte);
   add_method_arguments(app, arguments);
   add_bad_pixels_argument(app, arguments.bad_pixels);
   add_device_arguments(app, arguments);
@@ -185,6 +187,9 @@ Options options_of(const FilterArguments& arguments) {
   if (arguments.materials.materials.empty() && arguments.materials.profile.empty())
     throw Error(ErrorCode::usage, "--material", "neither it nor --profile",
                 "ID=PROFILE for the materials that scatter, or --profile PROFILE for every pixel");
+  if (!arguments.cryptomatte.empty() && arguments.materials.materials.empty())
+    throw Error(ErrorCode::usage, "--cryptomatte", arguments.cryptomatte.front() + " without --material",
+                "ID=PROFILE for its id");
   if (arguments.stats && arguments.stats_json == "-")
     throw Error(ErrorCode::usage, "--stats-json", "- together with --stats", "only one of them on standard output");
   if (!arguments.tile_map.empty() && arguments.stats_json == "-")
@@ -227,6 +232,7 @@ std::string command_text(const FilterArguments& arguments) {
   if (picture.camera.fov_deg) add("--fov", *picture.camera.fov_deg);
   if (picture.camera.focal_px) add("--focal-px", *picture.camera.focal_px);
   if (picture.camera.orthographic_px_per_unit) add("--px-per-unit", *picture.camera.orthographic_px_per_unit);
+  for (const std::string& matte : arguments.cryptomatte) add("--cryptomatte", matte);
   for (const std::string& role : picture.roles) add("--role", role);
   if (!picture.layer.empty()) add("--layer", picture.layer);
   return text;

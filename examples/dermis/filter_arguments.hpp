@@ -18,7 +18,8 @@ struct FilterArguments {
   bool reuse = false;
   PictureArguments picture;  ///< the path is one of the inputs
   MaterialArguments materials;
-  std::string output;  ///< like preview, tile_map and stats_json a folder if there are several inputs
+  std::vector<std::string> cryptomatte;  ///< NAME=ID
+  std::string output;                    ///< like preview, tile_map and stats_json a folder if there are several inputs
   std::string compression;
   std::string preview;
   std::string tile_map;

@@ -101,8 +101,8 @@ void find_surfaces(Info& info, const std::vector<NamedProfile>& profiles, const 
 }
 
 std::size_t bytes_of_images(const LoadedFrame& loaded) {
-  const std::size_t inputs =
-      loaded.light.size() + loaded.albedo.size() + loaded.depth.size() + loaded.material.size() + loaded.mask.size();
+  const std::size_t inputs = loaded.light.size() + loaded.albedo.size() + loaded.depth.size() + loaded.material.size() +
+                             loaded.mask.size() + loaded.matte.size();
   const std::size_t scattered = loaded.light.size();
   return (inputs + scattered) * bytes_of(Format::f32);
 }

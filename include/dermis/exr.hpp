@@ -81,9 +81,9 @@ class Picture {
 };
 
 /// What a channel is for.
-enum class Role { light, albedo, depth, position, normal, material, mask, specular, beauty };
-inline constexpr std::array all_roles = {Role::light,    Role::albedo, Role::depth,    Role::position, Role::normal,
-                                         Role::material, Role::mask,   Role::specular, Role::beauty};
+enum class Role { light, albedo, depth, position, normal, material, mask, matte, specular, beauty };
+inline constexpr std::array all_roles = {Role::light,    Role::albedo, Role::depth, Role::position, Role::normal,
+                                         Role::material, Role::mask,   Role::matte, Role::specular, Role::beauty};
 
 std::string_view name_of(Role role);
 
@@ -113,6 +113,19 @@ std::vector<float> load(const Picture& picture, const Roles& roles, Role role);
 
 /// Throws Error(role_missing) that names the role and lists the channels there are, if the picture does not have it.
 void require(const Picture& picture, const Roles& roles, Role role);
+
+/// The id that Cryptomatte gives a name: MurmurHash3 of it, as a float that is a number.
+float cryptomatte_id(std::string_view name);
+
+/// Which of some names covers most of each pixel (-1: none does), and how much of it, 0..1.
+struct Mattes {
+  std::vector<int> name;
+  std::vector<float> share;
+};
+
+/// From all Cryptomatte layers of a picture (channels such as "ViewLayer.CryptoObject00.R", in any case). Throws
+/// Error(role_missing) if there is none or a name covers no pixel, Error(input_unsupported) if ids are not float32.
+Mattes load_cryptomatte(const Picture& picture, std::span<const std::string> names);
 
 /// What the caller says of the camera; at most one of fov and focal.
 struct CameraHint {

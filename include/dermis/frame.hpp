@@ -84,7 +84,11 @@ struct Frame {
   Image depth = {};     ///< 1 channel, f16 or f32: distance along the view axis, scene units
   Image material = {};  ///< 1 channel, any format: material id; a fractional id belongs to no material
   Image mask = {};      ///< 1 channel, f16 or f32: width of the profile, 0 (no scattering) .. 1 (the whole profile)
-  Image beauty = {};    ///< RGB, f16 or f32: the picture with all its light; needed for `result`
+  /// 1 channel, f16 or f32: the share m of each pixel that its material covers, 0 (none: it does not scatter) .. 1. As
+  /// only m of the light there is the material's own, a pixel gives light as m^2 of a surface; what is written is
+  /// (1 - m) of the light as it was and m of that after scattering.
+  Image matte = {};
+  Image beauty = {};  ///< RGB, f16 or f32: the picture with all its light; needed for `result`
   Camera camera = {};
   double mm_per_unit = 1;  ///< millimetres per scene unit
 

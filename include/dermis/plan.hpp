@@ -75,13 +75,15 @@ struct FrameDescription {
   bool material = false;
   bool mask = false;
   bool albedo = false;
+  bool matte = false;
 
   /// The description of a frame.
   static FrameDescription of(const Frame& frame) {
     return {.depth = static_cast<bool>(frame.depth),
             .material = static_cast<bool>(frame.material),
             .mask = static_cast<bool>(frame.mask),
-            .albedo = static_cast<bool>(frame.albedo)};
+            .albedo = static_cast<bool>(frame.albedo),
+            .matte = static_cast<bool>(frame.matte)};
   }
   bool operator==(const FrameDescription&) const = default;
 };

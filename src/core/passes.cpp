@@ -120,7 +120,8 @@ Passes::Passes(const Plan::State& plan, const Frame& frame, const BoundImages& i
             (images.has(ImageName::result) && !images.in_place(ImageName::result, ImageName::beauty)) ||
             plan.options.bad_pixels == BadPixels::zero;
   holds_ = plan.options.bad_pixels == BadPixels::error || reuse_ != nullptr;
-  for (const ImageName input : {ImageName::light, ImageName::albedo, ImageName::depth, ImageName::mask}) {
+  for (const ImageName input :
+       {ImageName::light, ImageName::albedo, ImageName::depth, ImageName::mask, ImageName::matte}) {
     holds_ = holds_ || images.output_over(input);
   }
   if (holds_ && reuse_ == nullptr) memory.need_held(context);
@@ -157,6 +158,7 @@ void Passes::classify() {
                 images_.buffer(ImageName::depth), images_.layout(ImageName::depth),        //
                 images_.buffer(ImageName::material), images_.layout(ImageName::material),  //
                 images_.buffer(ImageName::mask), images_.layout(ImageName::mask),          //
+                images_.buffer(ImageName::matte), images_.layout(ImageName::matte),        //
                 memory_.surface, memory_.cells);
   events_.classify.push_back(launch(survey, columns, params_.cells_y, 1));
   cl::Kernel choose(plan_.classify_program, "choose_passes");
@@ -177,6 +179,7 @@ void Passes::compare_with_frame_before() {
                 images_.buffer(ImageName::depth), images_.layout(ImageName::depth),        //
                 images_.buffer(ImageName::material), images_.layout(ImageName::material),  //
                 images_.buffer(ImageName::mask), images_.layout(ImageName::mask),          //
+                images_.buffer(ImageName::matte), images_.layout(ImageName::matte),        //
                 reuse_->fingerprints, follows_ ? 0 : 1, reuse_->changed);
   events_.classify.push_back(launch(kernel, 1, params_.cells_y, 1));
 }
@@ -190,16 +193,19 @@ void Passes::prepare() {
                 images_.buffer(ImageName::albedo), images_.layout(ImageName::albedo),  //
                 images_.buffer(ImageName::depth), images_.layout(ImageName::depth),    //
                 images_.buffer(ImageName::mask), images_.layout(ImageName::mask),      //
+                images_.buffer(ImageName::matte), images_.layout(ImageName::matte),    //
                 memory_.windows, plane, columns, memory_.counters);
   const int items = plan_.item_is_pixel ? memory_.sizes.stride() : 1;
   events_.classify.push_back(launch(prepare, items, params_.height, plan_.item_is_pixel ? 0 : 1));
   if (plan_.options.method == Method::exact) {
     cl::Kernel slopes(plan_.program, "slopes");
-    set_arguments(slopes, params_, window_, memory_.windows, plane, memory_.between, columns);
+    set_arguments(slopes, params_, window_, memory_.windows, plane, images_.buffer(ImageName::matte),
+                  images_.layout(ImageName::matte), memory_.between, columns);
     events_.classify.push_back(launch(slopes, runs(), params_.height, plan_.item_is_pixel ? 0 : 1));
   } else {
     cl::Kernel segments(plan_.program, "segments");
-    set_arguments(segments, params_, window_, memory_.windows, plane, memory_.segments);
+    set_arguments(segments, params_, window_, memory_.windows, plane, images_.buffer(ImageName::matte),
+                  images_.layout(ImageName::matte), memory_.segments);
     events_.classify.push_back(launch(segments, params_.width, params_.height, 0));
   }
 }
@@ -230,6 +236,7 @@ void Passes::scatter_tiles() {
       images_.buffer(ImageName::albedo), images_.layout(ImageName::albedo),                                  //
       images_.buffer(ImageName::depth), images_.layout(ImageName::depth),                                    //
       images_.buffer(ImageName::mask), images_.layout(ImageName::mask),                                      //
+      images_.buffer(ImageName::matte), images_.layout(ImageName::matte),                                    //
       images_.buffer(ImageName::beauty), images_.layout(ImageName::beauty),                                  //
       images_.buffer(ImageName::scattered), images_.layout(ImageName::scattered),                            //
       flag(images_.has(ImageName::scattered)),                                                               //
@@ -271,6 +278,7 @@ void Passes::finish() {
   set_arguments(kernel, params_, memory_.surface,                                                         //
                 images_.buffer(ImageName::light), images_.layout(ImageName::light),                       //
                 images_.buffer(ImageName::albedo), images_.layout(ImageName::albedo),                     //
+                images_.buffer(ImageName::matte), images_.layout(ImageName::matte),                       //
                 images_.buffer(ImageName::beauty), images_.layout(ImageName::beauty),                     //
                 images_.buffer(ImageName::scattered), images_.layout(ImageName::scattered),               //
                 flag(images_.has(ImageName::scattered)),                                                  //

@@ -75,9 +75,9 @@ std::string common_options(const Plan::State& state, int materials) {
          << "f -DMOST_STRETCH=" << Taps::most_stretch << "f -DMOST_SKEW=" << Taps::most_skew << "f";
   return "-cl-std=CL1.2" + define("MATERIALS", materials) + define("HAS_DEPTH", frames.depth ? 1 : 0) +
          define("HAS_MATERIAL", frames.material ? 1 : 0) + define("HAS_MASK", frames.mask ? 1 : 0) +
-         define("HAS_ALBEDO", frames.albedo ? 1 : 0) + define("PIXEL_WIDTH", state.has_pixel_width ? 1 : 0) +
-         define("JITTER", state.options.jitter > 0 ? 1 : 0) + define("SHEARED", state.is_sheared ? 1 : 0) +
-         bounds.str();
+         define("HAS_ALBEDO", frames.albedo ? 1 : 0) + define("HAS_MATTE", frames.matte ? 1 : 0) +
+         define("PIXEL_WIDTH", state.has_pixel_width ? 1 : 0) + define("JITTER", state.options.jitter > 0 ? 1 : 0) +
+         define("SHEARED", state.is_sheared ? 1 : 0) + bounds.str();
 }
 
 int vector_width(const Plan::State& state) { return state.item_is_pixel ? 1 : state.device.info().vector_width; }
@@ -158,6 +158,7 @@ void run_on_black(const Plan& plan, const FrameDescription& frames) {
               .depth = frames.depth ? image : none,
               .material = frames.material ? image : none,
               .mask = frames.mask ? image : none,
+              .matte = frames.matte ? image : none,
               .camera = Camera::orthographic(1, 1),
               .scattered = {.host = out.data()}};
   plan.run(frame);

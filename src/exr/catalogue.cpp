@@ -14,7 +14,10 @@ constexpr std::array<std::string_view, 6> single_endings = {"Z", "X", "V", "Y", 
 
 }  // namespace
 
-std::size_t values_of(Role role) { return role == Role::depth || role == Role::material || role == Role::mask ? 1 : 3; }
+std::size_t values_of(Role role) {
+  constexpr std::array single = {Role::depth, Role::material, Role::mask, Role::matte};
+  return std::find(single.begin(), single.end(), role) != single.end() ? 1 : 3;
+}
 
 std::string with_dot(std::string_view prefix, std::string_view ending) {
   std::string out(prefix);

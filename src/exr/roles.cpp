@@ -165,7 +165,7 @@ std::string chosen_layer(const Catalogue& catalogue, std::string_view wanted) {
 
 std::string_view name_of(Role role) {
   constexpr std::array<std::string_view, all_roles.size()> names = {
-      "light", "albedo", "depth", "position", "normal", "material", "mask", "specular", "beauty"};
+      "light", "albedo", "depth", "position", "normal", "material", "mask", "matte", "specular", "beauty"};
   return names[static_cast<std::size_t>(role)];
 }
 

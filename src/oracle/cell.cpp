@@ -62,6 +62,7 @@ void Cells::add_pixel(Cell& cell, int x, int y) const {
   if (pixel.wide) cell.scatters.set(pixel.material);
   if (pixel.wide && !pixel.wide_unsure) cell.surely_scatters.set(pixel.material);
   if (pixel.wide || pixel.wide_unsure) cell.perhaps_scatters.set(pixel.material);
+  cell.is_partial = cell.is_partial || pixel.covered < 1;
   cell.depth_mm.add(pixel.position_mm[2]);
   for (const Axis axis : {horizontal, vertical}) {
     cell.footprint[axis].add(pixel.effective_footprint[axis], pixel.wide, pixel.wide_unsure);
@@ -78,6 +79,7 @@ struct Cells::Surroundings {
   Range depth_mm;
   std::array<Range, 2> step_mm;
   std::array<int, 2> size_px;  ///< columns and rows of pixels that lie in the frame
+  bool is_partial;
 };
 
 Cells::Surroundings Cells::surroundings(Axis axis, int column, int row, const Extent& extent) const {
@@ -93,6 +95,7 @@ Cells::Surroundings Cells::surroundings(Axis axis, int column, int row, const Ex
   for (int j = first[vertical]; j <= last[vertical]; ++j) {
     for (int i = first[horizontal]; i <= last[horizontal]; ++i) {
       all.depth_mm.add(at(i, j).depth_mm);
+      all.is_partial = all.is_partial || at(i, j).is_partial;
       for (const Axis along : {horizontal, vertical}) all.step_mm[along].add(at(i, j).step_mm[along]);
     }
   }
@@ -161,6 +164,10 @@ ShearChoice Cells::shear(int column, int row) const {
 void Cells::add_kinds(Axis axis, int column, int row, const Extent& extent, std::vector<CellKind>& kinds) const {
   const Cell& cell = at(column, row);
   const Surroundings near = surroundings(axis, column, row, extent);
+  if (near.is_partial) {
+    kinds.push_back({Shape::curved, cell.footprint[axis].bounded(), {}});
+    return;
+  }
   const Variation within_reach = variation(axis, column, row, extent.shear, near.depth_mm, near.step_mm);
   const Bounded length = square_root(within_reach.squared_length);
   Bounded largest_range = length;

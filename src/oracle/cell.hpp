@@ -83,6 +83,7 @@ class Cells {
     MaterialSet scatters;          ///< some pixel has a wide kernel of that material
     MaterialSet surely_scatters;   ///< on any device
     MaterialSet perhaps_scatters;  ///< on some
+    bool is_partial = false;       ///< a material covers only a part of some pixel
   };
 
   /// How far around a cell its pixels' surroundings are looked at.

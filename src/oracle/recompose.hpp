@@ -7,7 +7,8 @@
 
 namespace dermis::oracle {
 
-/// Fills a Reference. The beauty changes only where the surface is touched.
-Reference recompose(const Surface& surface, const Light& light, const BoundedPicture& scattered);
+/// Fills a Reference. `after`: the light after the passes, of which a pixel takes the share that its material covers.
+/// The beauty changes only where the surface is touched.
+Reference recompose(const Surface& surface, const Light& light, const BoundedPicture& after);
 
 }  // namespace dermis::oracle

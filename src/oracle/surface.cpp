@@ -38,7 +38,10 @@ bool is_surface(const FrameImages& images, const View& view, int x, int y) {
     const double depth = images.depth(x, y);
     if (!std::isfinite(depth) || depth >= background_depth || (view.is_perspective() && depth <= 0)) return false;
   }
-  return !is_there(images.mask) || (std::isfinite(images.mask(x, y)) && images.mask(x, y) > 0);
+  const auto is_share = [&](const Picture& share) {
+    return !is_there(share) || (std::isfinite(share(x, y)) && share(x, y) > 0);
+  };
+  return is_share(images.mask) && is_share(images.matte);
 }
 
 bool has_albedo(const FrameImages& images, int x, int y) {
@@ -103,6 +106,7 @@ Surface::Surface(const Frame& frame, const FrameImages& images, std::span<const 
       SurfacePixel& pixel = pixels_[static_cast<std::size_t>(y) * width_ + x];
       pixel.material = material_at(images, view_, materials, x, y);
       if (pixel.material < 0) continue;
+      pixel.covered = is_there(images.matte) ? std::min(images.matte(x, y), 1.0) : 1;
       pixel.bad = !is_finite_at(images.light, x, y) || !has_albedo(images, x, y);
       const Material& material = materials[pixel.material];
       const Bounded z_mm = is_there(images.depth) ? view_.depth_mm(images.depth(x, y)) : exact(0);
@@ -119,7 +123,9 @@ Surface::Surface(const Frame& frame, const FrameImages& images, std::span<const 
   for (int y = 0; y < height_; ++y) {
     for (int x = 0; x < width_; ++x) {
       SurfacePixel& pixel = pixels_[static_cast<std::size_t>(y) * width_ + x];
-      if (pixel.material >= 0) pixel.segment_mm = {segment(x, y, horizontal), segment(x, y, vertical)};
+      if (pixel.material < 0) continue;
+      for (const Axis axis : {horizontal, vertical})
+        pixel.segment_mm[axis] = exact(pixel.covered) * exact(pixel.covered) * segment(x, y, axis);
     }
   }
 }

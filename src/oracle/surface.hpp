@@ -16,14 +16,15 @@ namespace dermis::oracle {
 
 /// One pixel. Where there is no material, nothing else is known.
 struct SurfacePixel {
-  int material = -1;         ///< index into the materials, by id, depth and mask; -1: none
+  int material = -1;         ///< index into the materials, by id, depth, mask and matte; -1: none
   bool bad = false;          ///< light or albedo not finite: part of the surface, but neither gives nor takes light
   bool wide = false;         ///< has a kernel at least half a pixel wide
   bool wide_unsure = false;  ///< so close to half a pixel that a float32 device may decide otherwise
+  double covered = 1;        ///< m, the share of the pixel that is of the material, above 0
   std::array<Bounded, 3> position_mm{};
   std::array<Bounded, 2> footprint{};            ///< px per mm along x and y
   std::array<Bounded, 3> width_factor{};         ///< k: the profile is R(r / k) / k^2
-  std::array<Bounded, 2> segment_mm{};           ///< length of surface that the pixel spans along either pass
+  std::array<Bounded, 2> segment_mm{};           ///< length of surface that the pixel spans along either pass, times m^2
   std::array<Bounded, 2> effective_footprint{};  ///< footprint times the widest channel's k, px per mm
 
   bool gives_light() const { return material >= 0 && !bad; }

@@ -66,9 +66,10 @@ class Patch {
 
 using Samples = std::vector<Sample>;
 
-Samples sample(const Patch& patch, const std::vector<QuadraturePoint>& points) {
+/// `covered`: the share m of the patch, which counts as m^2 of it.
+Samples sample(const Patch& patch, const std::vector<QuadraturePoint>& points, double covered) {
   Samples samples;
-  const double area = patch.area_mm2();
+  const double area = covered * covered * patch.area_mm2();
   for (const QuadraturePoint& v : points) {
     for (const QuadraturePoint& u : points) {
       samples.push_back({patch.at(u.position, v.position), u.weight * v.weight * area});
@@ -88,7 +89,7 @@ class SampledSurface {
       for (int x = 0; x < surface.width(); ++x) {
         if (!surface.at(x, y).gives_light()) continue;
         const Patch patch(surface, x, y);
-        for (const auto& rule : rules_) samples_[index(x, y)].push_back(sample(patch, rule));
+        for (const auto& rule : rules_) samples_[index(x, y)].push_back(sample(patch, rule, surface.at(x, y).covered));
       }
     }
   }
@@ -167,7 +168,7 @@ class Integral {
     const Material& material = materials_[pixel.material];
     const Patch patch(surface_, p.x, p.y);
     const std::array<Vec3, 2> tangents{patch.tangent(horizontal), patch.tangent(vertical)};
-    const double half_area = patch.area_mm2() / 2;
+    const double half_area = pixel.covered * pixel.covered * patch.area_mm2() / 2;
     std::array<double, 3> sum_of_angles{};
     for (const Axis axis : {horizontal, vertical}) {
       for (const QuadraturePoint& t : edge_rule_) {

@@ -141,6 +141,7 @@ TEST_CASE("the result does not depend on how it is computed", "[invariance]") {
     move_in(*frame.material, in_buffers.material);
     if (frame.albedo) move_in(*frame.albedo, in_buffers.albedo);
     if (frame.mask) move_in(*frame.mask, in_buffers.mask);
+    if (frame.matte) move_in(*frame.matte, in_buffers.matte);
     move_in(*frame.beauty, in_buffers.beauty);
     move_in(*frame.scattered, in_buffers.scattered);
     const cl::Buffer scattered = buffers.back();

@@ -49,6 +49,7 @@ RandomFrame::RandomFrame(Random& random, const RandomFrameChoice& choice) : widt
   const auto color_format = [&] { return choice.float_only || random.coin() ? Format::f32 : Format::f16; };
   const bool with_albedo = random.coin();
   const bool with_mask = random.integer(0, 3) == 0;
+  const bool with_matte = random.integer(0, 3) == 0;
   const bool with_beauty = random.coin();
 
   light.emplace(width, height, 3, color_format(), gaps);
@@ -56,6 +57,7 @@ RandomFrame::RandomFrame(Random& random, const RandomFrameChoice& choice) : widt
   scattered.emplace(width, height, 3, color_format(), gaps);
   if (with_albedo) albedo.emplace(width, height, 3, color_format(), gaps);
   if (with_mask) mask.emplace(width, height, 1, color_format(), gaps);
+  if (with_matte) matte.emplace(width, height, 1, color_format(), gaps);
 
   const int count = choice.materials.value_or(random.integer(1, 4));
   const bool with_ids = count > 1 || random.coin();
@@ -105,6 +107,9 @@ RandomFrame::RandomFrame(Random& random, const RandomFrameChoice& choice) : widt
         if (beauty) beauty->set(x, y, c, random.uniform(0, 4));
       }
       if (mask) mask->set(x, y, 0, random.integer(0, 9) == 0 ? 0 : random.uniform(0.3, 1));
+      // Covered in part along the edges of the light, and here and there.
+      const bool partial = random.integer(0, 30) == 0 || (x % 9 == 0 && 2 * y < height);
+      if (matte) matte->set(x, y, 0, partial ? random.uniform(0, 1) : 1);
       if (material) {
         // The patches take turns; one in count + 1 belongs to nothing.
         const int turn = (x / patch_px + 2 * (y / patch_px)) % (count + 1);
@@ -122,6 +127,7 @@ dermis::Frame RandomFrame::frame() {
   if (albedo) frame.albedo = albedo->image();
   if (material) frame.material = material->image();
   if (mask) frame.mask = mask->image();
+  if (matte) frame.matte = matte->image();
   if (beauty) frame.beauty = beauty->image();
   if (result) frame.result = result->output();
   return frame;

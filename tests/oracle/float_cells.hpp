@@ -97,6 +97,7 @@ class FloatCells {
   /// Of the pixels of some cells.
   struct Steepness {
     Extremes z, steps[2];
+    bool is_partial = false;  ///< a material covers only a part of some pixel
   };
 
   Steepness steepness(const int* begin, const int* end) const {
@@ -107,6 +108,7 @@ class FloatCells {
         const FloatPixel& p = pixel(x, y);
         if (p.material < 0) continue;
         all.z.add(p.position[2]);
+        all.is_partial = all.is_partial || p.covered < 1;
         for (int i = 0; i < 2; ++i) {
           const int next_at = (i == 0 ? x : y) + 1;
           if (next_at >= size[i] || next_at % 16 == 0) continue;
@@ -183,7 +185,7 @@ class FloatCells {
     for (int i = 0; i < 2; ++i) {
       range = multiply_add(static_cast<float>(end[i] - begin[i]), near.steps[i].steepest(), range);
     }
-    const bool unbroken = 2 * near.z.half() <= range;
+    const bool unbroken = 2 * near.z.half() <= range && !near.is_partial;
     cell.flat = unbroken && varying2 <= 0.1F * 0.1F * change2;
     cell.smooth = unbroken && !cell.flat && varying2 <= 0.4F * 0.4F * change2;
     cell.change_mm = std::sqrt(cell.smooth ? squared_change(own, corner, side)[0] : change2);

@@ -106,7 +106,11 @@ class FloatFilter {
       }
     }
     for (std::size_t j = 0; j < x.size(); ++j) {
-      if (!pixels_[j / 3].touched()) scattered[j] = x[j];
+      const float covered = pixels_[j / 3].covered;
+      if (!pixels_[j / 3].touched())
+        scattered[j] = x[j];
+      else if (covered < 1)
+        scattered[j] = multiply_add(covered, scattered[j] - x[j], x[j]);
     }
   }
 

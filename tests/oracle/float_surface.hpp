@@ -17,7 +17,8 @@ struct FloatPixel {
   std::array<float, 3> position{};
   std::array<float, 2> footprint{};
   std::array<float, 2> segment{};
-  int shear = 0;  ///< columns per row of the vertical pass, times 4096
+  int shear = 0;      ///< columns per row of the vertical pass, times 4096
+  float covered = 1;  ///< share
   std::array<float, 3> k{};
   float spread = 0;
   std::array<float, 3> x{};
@@ -69,6 +70,8 @@ class FloatSurface {
         if (made_.material[i] == static_cast<float>(materials_[m].id)) pixel.material = static_cast<int>(m);
       }
     }
+    if (!made_.matte.empty()) pixel.covered = std::fmin(made_.matte[i], 1.0F);
+    if (!(pixel.covered > 0)) pixel.material = -1;
     if (pixel.material < 0) return;
     const dermis::oracle::Material& material = materials_[pixel.material];
     const auto sx = static_cast<float>(made_.camera.scale_x);
@@ -127,7 +130,7 @@ class FloatSurface {
     }
     for (int axis = 0; axis < 2; ++axis) {
       const auto& [x, y, z] = tangents[axis];
-      pixel.segment[axis] = std::sqrt(x * x + y * y + z * z);
+      pixel.segment[axis] = pixel.covered * pixel.covered * std::sqrt(x * x + y * y + z * z);
     }
   }
 

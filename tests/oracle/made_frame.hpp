@@ -11,7 +11,7 @@ struct MadeFrame {
   int height;
   dermis::Camera camera;
   double mm_per_unit = 1;
-  std::vector<float> light, albedo, depth, material, mask, beauty;
+  std::vector<float> light, albedo, depth, material, mask, matte, beauty;
 
   /// Constant light, everything else absent.
   MadeFrame(int width_px, int height_px, const dermis::Camera& camera_, float light_value = 1)
@@ -39,6 +39,7 @@ struct MadeFrame {
     frame.depth = image(depth);
     frame.material = image(material);
     frame.mask = image(mask);
+    frame.matte = image(matte);
     frame.beauty = image(beauty);
     return frame;
   }

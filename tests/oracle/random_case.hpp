@@ -117,6 +117,14 @@ inline MadeFrame random_frame(Random& random, int width, int height, bool plain)
   if (perspective || random.integer(0, 3) > 0) add_depth(random, made, distance, 1 / pixels_per_mm);
   made.light = noise(random, 3 * made.pixels(), 0, random.coin() ? 1 : 1000);
   if (!plain && random.coin()) made.mask = noise(random, made.pixels(), 0.02, 1.2);
+  if (random.integer(0, 3) == 0) {
+    // Some covered in part, or not at all, or by more than there is; in the left half only.
+    made.matte.assign(made.pixels(), 1);
+    for (std::size_t i = 0; i < made.pixels(); ++i) {
+      const bool is_left = 2 * (static_cast<int>(i) % made.width) < made.width;
+      if (is_left && random.integer(0, 9) == 0) made.matte[i] = static_cast<float>(random.uniform(-0.2, 1.2));
+    }
+  }
   made.albedo = noise(random, 3 * made.pixels(), -0.05, 1.1);
   made.beauty = noise(random, 3 * made.pixels(), 0, 2);
   const bool mixed = random.coin();

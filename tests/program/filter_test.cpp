@@ -176,6 +176,44 @@ TEST_CASE("positions alone, and depth alone, give the same picture") {
   CHECK(relative_l2(folder / "position.exr", folder / "position-in.exr", "ViewLayer.Combined") > 1e-3);
 }
 
+TEST_CASE("a Cryptomatte gives ids and mattes") {
+  const TemporaryFolder folder;
+  const MadeScene scene = make_scene(folder / "in.exr", "touching", 61, 33, 4);
+  const Picture picture = Picture::read(scene.path);
+  const std::vector<float> ids = picture.plane("ViewLayer.IndexMA.X");
+  const float left = dermis::exr::cryptomatte_id("Left half");
+  const float right = dermis::exr::cryptomatte_id("Right.001");
+  // Objects fill their pixels but for a column, where both show; what covers less comes second.
+  std::vector<std::vector<float>> ranks(4, std::vector<float>(ids.size()));
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    const bool is_left = ids[i] == 1;
+    const bool is_shared = i % 61 == 20;
+    ranks[0][i] = is_left ? left : right;
+    ranks[1][i] = is_shared ? 0.7F : 1;
+    ranks[2][i] = is_shared ? (is_left ? right : left) : 0;
+    ranks[3][i] = is_shared ? 0.3F : 0;
+  }
+  PictureCopy with(scene.path);
+  const Words channels = {"R", "G", "B", "A"};
+  for (std::size_t k = 0; k < 4; ++k) with.with("ViewLayer.CryptoObject00." + channels[k], ranks[k]);
+  with.without("ViewLayer.IndexMA").write(folder / "crypto-in.exr");
+  std::vector<float> matte(ids.size(), 1);
+  for (std::size_t i = 20; i < ids.size(); i += 61) matte[i] = 0.7F;
+  PictureCopy(scene.path).with("edge.X", matte).write(folder / "ids-in.exr");
+
+  Words by_id = both_materials;
+  by_id.insert(by_id.end(), {"--role", "matte=edge"});
+  run_well(filter_arguments({folder / "ids-in.exr", scene.camera}, folder / "ids.exr", by_id));
+  Words by_name = both_materials;
+  by_name.insert(by_name.end(), {"--cryptomatte", "Left half=1", "--cryptomatte", "Right.001=2"});
+  run_well(filter_arguments({folder / "crypto-in.exr", scene.camera}, folder / "crypto.exr", by_name));
+  const auto scattered = [&](const char* name) { return Picture::read(folder / name).plane("ViewLayer.sss.R"); };
+  CHECK(scattered("crypto.exr") == scattered("ids.exr"));
+  run_well(filter_arguments(scene, folder / "whole.exr", both_materials));
+  CHECK(scattered("crypto.exr") != scattered("whole.exr"));
+  CHECK(attribute(folder / "crypto.exr", "dermis:command").find("--cryptomatte") != std::string::npos);
+}
+
 TEST_CASE("an orthographic scene is filtered with pixels per unit") {
   const TemporaryFolder folder;
   const MadeScene scene = make_scene(folder / "in.exr", "step", 48, 20, 4, true);
