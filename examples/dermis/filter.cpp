@@ -16,6 +16,7 @@
 #include "bad_pixels_argument.hpp"
 #include "chosen_designs.hpp"
 #include "commands.hpp"
+#include "compare_methods.hpp"
 #include "dermis/error.hpp"
 #include "dermis/exr.hpp"
 #include "dermis/plan.hpp"
@@ -56,6 +57,7 @@ void check_outputs_differ(const FilterArguments& arguments) {
   };
   check("--preview", arguments.preview);
   check("--tile-map", arguments.tile_map);
+  check("--compare-methods", arguments.compare_methods);
   check("--stats-json", arguments.stats_json);
 }
 
@@ -64,6 +66,7 @@ void check_outputs(const FilterArguments& arguments) {
   check_writable("--output", arguments.output);
   if (!arguments.preview.empty()) check_writable("--preview", arguments.preview);
   if (!arguments.tile_map.empty()) check_writable("--tile-map", arguments.tile_map);
+  if (!arguments.compare_methods.empty()) check_writable("--compare-methods", arguments.compare_methods);
   if (!arguments.stats_json.empty() && arguments.stats_json != "-")
     check_writable("--stats-json", arguments.stats_json);
 }
@@ -238,7 +241,8 @@ Input read_input(const FilterArguments& arguments, const std::vector<NamedProfil
   const exr::Picture& picture = input.picture;
   report.roles = exr::find_roles(picture, arguments.picture.roles, arguments.picture.layer);
   require_roles(picture, report.roles, profiles, report.options, !arguments.cryptomatte.empty());
-  if (!arguments.preview.empty()) exr::require(picture, report.roles, Role::beauty);
+  if (!arguments.preview.empty() || !arguments.compare_methods.empty())
+    exr::require(picture, report.roles, Role::beauty);
   report.camera = exr::find_camera(picture, report.roles, arguments.picture.camera);
   input.loaded = load_frame(picture, report.roles, report.camera, profiles, arguments.cryptomatte);
   report.materials = report_materials(profiles, input.loaded, report.camera.camera, *arguments.picture.mm_per_unit);
@@ -266,6 +270,31 @@ Frame frame_of(Input& input, const StatsReport& report, double mm_per_unit) {
   return frame;
 }
 
+/// The path-traced picture, or whatever the frame is to be compared with.
+MethodPicture read_truth(const std::string& path, const Frame& frame) {
+  const exr::Picture picture = exr::Picture::read(path);
+  const exr::Roles roles = exr::find_roles(picture);
+  exr::require(picture, roles, Role::beauty);
+  if (picture.width() != frame.width || picture.height() != frame.height)
+    throw Error(ErrorCode::usage, "--truth", fmt::format("{}x{} pixels", picture.width(), picture.height()),
+                fmt::format("the {}x{} of the input", frame.width, frame.height));
+  return {"path traced", exr::load(picture, roles, Role::beauty), {}};
+}
+
+/// None if they were not asked for.
+std::vector<MethodPicture> compared_methods(const FilterArguments& arguments, const FilterSession& session,
+                                            const std::vector<NamedProfile>& profiles, const Frame& frame,
+                                            const Input& input, const StatsReport& report) {
+  if (arguments.compare_methods.empty()) return {};
+  std::optional<MethodPicture> truth;
+  if (!arguments.truth.empty()) truth = read_truth(arguments.truth, frame);
+  std::vector<MethodPicture> pictures =
+      picture_methods(session.device(), materials_of(profiles), frame, input.loaded,
+                      exr::load(input.picture, report.roles, Role::beauty), report.options);
+  if (truth) pictures.push_back(std::move(*truth));
+  return pictures;
+}
+
 /// One picture. The device is opened when the first one has been read.
 void filter_picture(const FilterArguments& arguments, std::optional<FilterSession>& session) {
   Stopwatch whole;
@@ -288,11 +317,14 @@ void filter_picture(const FilterArguments& arguments, std::optional<FilterSessio
   make_plan(*session, profiles, frame, report.options);
   report.times.plan_ms = step.lap_ms();
 
+  const std::vector<MethodPicture> methods = compared_methods(arguments, *session, profiles, frame, input, report);
   report.stats = run_plan(*session, frame);
   warn_of_bad_pixels(report.stats, report.options.bad_pixels);
   report.times.run_ms = step.lap_ms();
 
   write_pictures(arguments, input, report);
+  if (!methods.empty())
+    draw_methods("--compare-methods", arguments.compare_methods, frame.width, frame.height, methods);
   report.times.write_ms = step.lap_ms();
   report.times.total_ms = whole.lap_ms();
   if (!arguments.tile_map.empty()) fmt::print("{}", legend_of(report.stats.tiles));

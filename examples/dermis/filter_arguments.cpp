@@ -77,6 +77,14 @@ void add_output_arguments(CLI::App& app, FilterArguments& arguments) {
                  "also draw what became of each tile, over the dimmed light, and print what the colours mean")
       ->check(folder_or_file_ending({".png"}))
       ->type_name("FILE.png");
+  auto* compare =
+      app.add_option("--compare-methods", arguments.compare_methods,
+                     "also draw the beauty under each method side by side, with the error of each; takes long, as the "
+                     "exact method is one");
+  compare->check(folder_or_file_ending({".png"}))->type_name("FILE.png");
+  app.add_option("--truth", arguments.truth, "a picture to show beside them, for instance the same view path-traced")
+      ->needs(compare)
+      ->type_name("FILE.exr");
   app.add_flag("--stats", arguments.stats, "print times, and what was computed and skipped");
   app.add_option("--stats-json", arguments.stats_json, "write the same as JSON; - is standard output")
       ->type_name("FILE");
@@ -142,6 +150,7 @@ std::vector<FilterArguments> one_by_one(const FilterArguments& arguments) {
   constexpr Output outputs[] = {{"--output", &FilterArguments::output, ".exr"},
                                 {"--preview", &FilterArguments::preview, ".png"},
                                 {"--tile-map", &FilterArguments::tile_map, ".png"},
+                                {"--compare-methods", &FilterArguments::compare_methods, ".png"},
                                 {"--stats-json", &FilterArguments::stats_json, ".json"}};
   std::vector<FilterArguments> all;
   std::map<std::string, std::string> taken;  // outputs, and whose they are
@@ -194,6 +203,11 @@ Options options_of(const FilterArguments& arguments) {
     throw Error(ErrorCode::usage, "--stats-json", "- together with --stats", "only one of them on standard output");
   if (!arguments.tile_map.empty() && arguments.stats_json == "-")
     throw Error(ErrorCode::usage, "--stats-json", "- together with --tile-map", "only one of them on standard output");
+  if (!arguments.compare_methods.empty() && (arguments.lighting == "lit" || arguments.options.albedo_mix != 0))
+    throw Error(
+        ErrorCode::usage, "--compare-methods",
+        arguments.lighting == "lit" ? "--lighting lit" : fmt::format("--albedo-mix {}", arguments.options.albedo_mix),
+        "raw light and no albedo mix, as the rule of 2012 knows of neither");
   check_quality(arguments);
   Options options = arguments.options;
   options.taps = design_of(arguments.design, is_automatic(arguments) ? tolerance_of(arguments.quality) : 0);

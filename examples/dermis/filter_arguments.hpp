@@ -19,10 +19,12 @@ struct FilterArguments {
   PictureArguments picture;  ///< the path is one of the inputs
   MaterialArguments materials;
   std::vector<std::string> cryptomatte;  ///< NAME=ID
-  std::string output;                    ///< like preview, tile_map and stats_json a folder if there are several inputs
+  std::string output;  ///< like preview, tile_map, compare_methods and stats_json a folder if there are several inputs
   std::string compression;
   std::string preview;
   std::string tile_map;
+  std::string compare_methods;
+  std::string truth;
   std::string stats_json;
   bool stats = false;
   std::string device;
