@@ -214,6 +214,39 @@ TEST_CASE("a Cryptomatte gives ids and mattes") {
   CHECK(attribute(folder / "crypto.exr", "dermis:command").find("--cryptomatte") != std::string::npos);
 }
 
+TEST_CASE("methods are drawn side by side") {
+  const TemporaryFolder folder;
+  const MadeScene scene = make_scene(folder / "in.exr", "sphere", 65, 47, 3);
+  const std::string sheet = folder / "sheet.png";
+  Words arguments = filter_arguments(scene, folder / "out.exr", {"--material", "1=skin", "--compare-methods", sheet});
+  Words lit = arguments;
+  lit.insert(lit.end(), {"--lighting", "lit"});
+  check_refused(lit, 2, {"--compare-methods", "--lighting lit", "raw"});
+  if (std::system("command -v gnuplot >/dev/null 2>&1") != 0) return;
+
+  // The path tracer's place is taken by the scene itself.
+  arguments.insert(arguments.end(), {"--truth", scene.path});
+  run_well(arguments);
+  const auto image = OIIO::ImageInput::open(sheet);
+  REQUIRE(image);
+  const OIIO::ImageSpec& spec = image->spec();
+  std::vector<unsigned char> values(static_cast<std::size_t>(spec.width) * spec.height * spec.nchannels);
+  REQUIRE(image->read_image(OIIO::TypeDesc::UINT8, values.data()));
+  // Error maps are black but where they are not, and the first one has the most light in it.
+  const auto light_in = [&](int column) {
+    double sum = 0;
+    const int panel = spec.width / 6;
+    for (int y = spec.height * 2 / 3; y < spec.height * 9 / 10; ++y)
+      for (int x = column * panel + panel / 4; x < column * panel + panel * 3 / 4; ++x)
+        sum += values[(static_cast<std::size_t>(y) * spec.width + x) * spec.nchannels];
+    return sum;
+  };
+  CHECK(light_in(0) > 2 * light_in(3));
+  CHECK(light_in(3) > 0);
+  CHECK(light_in(4) == 0);
+  CHECK(Picture::read(folder / "out.exr").find("ViewLayer.sss.R") != nullptr);
+}
+
 TEST_CASE("an orthographic scene is filtered with pixels per unit") {
   const TemporaryFolder folder;
   const MadeScene scene = make_scene(folder / "in.exr", "step", 48, 20, 4, true);
