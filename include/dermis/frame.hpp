@@ -84,7 +84,10 @@ struct Frame {
   Image depth = {};     ///< 1 channel, f16 or f32: distance along the view axis, scene units
   Image material = {};  ///< 1 channel, any format: material id; a fractional id belongs to no material
   Image mask = {};      ///< 1 channel, f16 or f32: width of the profile, 0 (no scattering) .. 1 (the whole profile)
-  Image beauty = {};    ///< RGB, f16 or f32: the picture with all its light; needed for `result`
+  /// 3 channels, f16 or f32, of any length: across the surface, towards the camera, on axes to the right, down and away
+  /// from it. Method::disc takes the plane of its discs from it; where it is not finite or faces away, from depth.
+  Image normal = {};
+  Image beauty = {};  ///< RGB, f16 or f32: the picture with all its light; needed for `result`
   Camera camera = {};
   double mm_per_unit = 1;  ///< millimetres per scene unit
 

@@ -10,8 +10,8 @@
 
 namespace dermis {
 
-enum class ImageName { light, albedo, depth, material, mask, beauty, scattered, result };
-inline constexpr int image_count = 8;
+enum class ImageName { light, albedo, depth, material, mask, normal, beauty, scattered, result };
+inline constexpr int image_count = 9;
 
 /// One image of a frame, whatever it is for.
 struct FrameImage {

@@ -95,6 +95,7 @@ FrameImages read_images(const Frame& frame) {
           .depth = load(frame.depth, 1, "frame.depth"),
           .material = load(frame.material, 1, "frame.material"),
           .mask = load(frame.mask, 1, "frame.mask"),
+          .normal = load(frame.normal, 3, "frame.normal"),
           .beauty = load(frame.beauty, 3, "frame.beauty")};
 }
 

@@ -13,6 +13,7 @@ struct FrameImages {
   Picture depth;
   Picture material;
   Picture mask;
+  Picture normal;
   Picture beauty;
 };
 
