@@ -75,7 +75,7 @@ typedef struct {
 // Reads blocks of 2^level pixels a side, (x, y) pixels away: the four about that point, by the share of a square of
 // side 1 / `sharpness` blocks that lies on each side of the lines between them. The pixel itself has no share. Returns
 // 0 if one of them, of blocks larger than a pixel, is not all of the material or holds the pixel itself.
-static inline int read_level(Reading* reading, const Pixel* pixel, int level, float sharpness, float x, float y) {
+SHARED int read_level(Reading* reading, const Pixel* pixel, int level, float sharpness, float x, float y) {
   const float size_px = (float)(1 << level);
   const float to_blocks = 1.0f / size_px;
   const int width = pixel->f->width >> level;

@@ -39,8 +39,8 @@ void append_disc(const Profile& profile, int channel, const DiscOptions& options
         samples.push_back({static_cast<float>(r_mm * std::cos(angle)), static_cast<float>(r_mm * std::sin(angle)),
                            static_cast<float>(area_mm2), static_cast<float>(spacing_mm)});
         if (i == 0) disc.inner_mm[which][start] = static_cast<float>(profile.radius(channel, from) + spacing_mm / 2);
-        // What a sample reads may begin a block and a half away.
-        reach_mm = std::max(reach_mm, r_mm + 2 * spacing_mm);
+        // Blocks that a sample reads end a block and a half away at most.
+        reach_mm = std::max(reach_mm, r_mm + (options.prefiltered ? 1.5 * spacing_mm : 0));
       }
     }
   }
