@@ -74,10 +74,10 @@ TEST_CASE("discs equal the oracle within float rounding", "[disc][kernels]") {
   const Device device = Device::open();
   constexpr int sizes[][2] = {{1, 1}, {7, 5}, {61, 40}, {33, 28}, {70, 3}};
   Tally tally;
-  for (unsigned round = 0; round < 10; ++round) {
+  for (unsigned round = 0; round < 8; ++round) {
     Random random(8000 + round);
     const auto& [width, height] = sizes[round % 5];
-    RandomFrame random_frame(random, {.width = width, .height = height, .jitter = 0.0});
+    RandomFrame random_frame(random, {.width = width, .height = height, .materials = 2, .jitter = 0.0});
     choose_discs(random, random_frame);
     Frame frame = random_frame.frame();
     const GuardedImage normals = random_normals(random, width, height);
