@@ -37,6 +37,8 @@ std::string_view name_of(Family family) {
       return "dermis";
     case Family::dermis_exact:
       return "dermis-exact";
+    case Family::dermis_disc:
+      return "dermis-disc";
     case Family::naive:
       return "naive";
     case Family::rule_2012:
@@ -96,6 +98,8 @@ std::string Case::model() const {
 std::string Case::method() const {
   std::string text(name_of(family));
   if (family == Family::start_up) return text + (cache_is_filled ? "/cached" : "/cold");
+  if (family == Family::dermis_disc)
+    return text + fmt::format("/n{}{}", disc.samples, disc.prefiltered ? "/prefiltered" : "");
   if (tolerance > 0) return fmt::format("{}/within-{:g}%", text, 100 * tolerance);
   if (has_taps(family)) text += fmt::format("/{}/r{}/t{}", model(), design.rank, design.count);
   return text;

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "dermis/plan.hpp"
 #include "dermis/taps.hpp"
 #include "scene.hpp"
 
@@ -14,6 +15,7 @@ namespace dermis::bench {
 enum class Family {
   dermis,            ///< the separable method
   dermis_exact,      ///< the surface integral by brute force
+  dermis_disc,       ///< samples of it on discs
   naive,             ///< an OpenCL kernel, one work-item per pixel and pass
   rule_2012,         ///< the same with the rules of the 2012 shader
   simd,              ///< C++ with vectors, constant offsets, no depth
@@ -42,12 +44,15 @@ struct Case {
   SceneSpec scene = {};
   TapsDesign design = {.rank = 2};  ///< of dermis; of the opponents only `count`
   double tolerance = 0;             ///< > 0: in place of the design, the cheapest that is predicted to be as good
+  DiscOptions disc = {};            ///< of dermis_disc
   bool sheared = true;              ///< of dermis, as Options::sheared
   int threads = 0;                  ///< of dermis; 0: all
   Memory memory = Memory::planar_f32;
   bool cache_is_filled = false;  ///< of a start-up: kernels were compiled by an earlier process
 
-  bool is_dermis() const { return family == Family::dermis || family == Family::dermis_exact; }
+  bool is_dermis() const {
+    return family == Family::dermis || family == Family::dermis_exact || family == Family::dermis_disc;
+  }
   std::string model() const;   ///< empty where there is none
   std::string method() const;  ///< the name up to the scene
   std::string name() const;    ///< "dermis/optimised/r2/t17/spheres/1920x1080/w16/c100"

@@ -52,8 +52,11 @@ class Filter final : public Opponent {
 
  private:
   static Options options_of(const Case& what) {
-    return {.method = what.family == Family::dermis_exact ? Method::exact : Method::separable,
+    return {.method = what.family == Family::dermis_exact  ? Method::exact
+                      : what.family == Family::dermis_disc ? Method::disc
+                                                           : Method::separable,
             .taps = what.design,
+            .disc = what.disc,
             .sheared = what.sheared};
   }
 

@@ -28,6 +28,8 @@ double loads_of(const Case& what) {
       return 2.0 * (2 * dense_reach_px(what.scene) + 1);
     case Family::opencv_bilateral:
       return 15 * 15;
+    case Family::dermis_disc:
+      return 4.0 * what.disc.samples;
     case Family::dermis_exact:
     case Family::fft:
       return 0;
@@ -39,6 +41,7 @@ std::unique_ptr<Opponent> make_opponent(const Case& what, const Scene& scene, co
   switch (what.family) {
     case Family::dermis:
     case Family::dermis_exact:
+    case Family::dermis_disc:
     case Family::start_up:
       return make_dermis(what, scene, device);
     case Family::naive:

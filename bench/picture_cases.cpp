@@ -15,6 +15,13 @@ PictureCase optimised(int rank, int count) {
   return {series + ", " + std::to_string(count) + " taps", series, {.taps = {.rank = rank, .count = count}}};
 }
 
+PictureCase disc(int samples, bool prefiltered) {
+  const std::string series = prefiltered ? "discs, prefiltered" : "discs";
+  return {series + ", " + std::to_string(samples) + " samples",
+          series,
+          {.method = Method::disc, .disc = {.samples = samples, .prefiltered = prefiltered}}};
+}
+
 PictureCase jittered(PictureCase what, double jitter) {
   what.series.clear();
   what.name += jitter < 0.2 ? ", jitter 0.1" : ", jitter 0.3";
@@ -38,6 +45,9 @@ std::vector<PictureCase> picture_cases() {
   cases.push_back(plain);
   cases.push_back(jittered(optimised(2, 17), 0.1));
   cases.push_back(jittered(optimised(2, 17), 0.3));
+  for (const bool prefiltered : {false, true}) {
+    for (const int samples : {21, 55}) cases.push_back(disc(samples, prefiltered));
+  }
   return cases;
 }
 

@@ -14,7 +14,7 @@ struct PictureCase {
   Options options;
 };
 
-/// The separable method over models, ranks and tap counts, plain and with rotated taps.
+/// The separable method over models, ranks and tap counts, plain and with rotated taps; and discs.
 std::vector<PictureCase> picture_cases();
 
 /// The result of one case.

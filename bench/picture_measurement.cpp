@@ -134,7 +134,9 @@ PictureMeasurement measure_picture(const Device& device, const Subject& subject,
   }
   for (Running& one : running) {
     add_times(one.row, one, result.copy_ms);
-    one.row.loads = (1.0 + one.row.what.options.taps.rank) * one.row.what.options.taps.count;
+    const Options& options = one.row.what.options;
+    one.row.loads =
+        options.method == Method::disc ? 4.0 * options.disc.samples : (1.0 + options.taps.rank) * options.taps.count;
     const oracle::Picture picture = picture_of(subject, one.scattered);
     for (const oracle::Picture& mask : masks) {
       const oracle::Difference difference = oracle::compare(picture, truth, mask);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <string_view>
 
 #include "chart.hpp"
 #include "dermis/error.hpp"
@@ -24,11 +25,16 @@ std::string errors_of(const PictureRow& row) {
   return text;
 }
 
+std::string_view name_of(Method method) {
+  return method == Method::exact ? "exact" : method == Method::disc ? "disc" : "separable";
+}
+
 nlohmann::ordered_json json_row(const PictureRow& row, const Subject& subject) {
   nlohmann::ordered_json errors;
   for (std::size_t i = 0; i < row.rel_l2.size(); ++i) errors[subject.material_names[i]] = row.rel_l2[i];
   return {{"name", row.what.name},
-          {"method", row.what.options.method == Method::exact ? "exact" : "separable"},
+          {"method", name_of(row.what.options.method)},
+          {"samples", row.what.options.disc.samples},
           {"rank", row.what.options.taps.rank},
           {"taps", row.what.options.taps.count},
           {"jitter", row.what.options.jitter},

@@ -40,6 +40,9 @@ Look look_of(const Case& what) {
       return {"OpenCV bilateral", "#6abf9f", 12};
     case Family::fft:
       return {"FFTW, exact", "#7a4fa3", 3};
+    case Family::dermis_disc:
+      return what.disc.prefiltered ? Look{"dermis, discs, prefiltered", "#c23b3b", 10}
+                                   : Look{"dermis, discs", "#e58a8a", 8};
     default:
       break;
   }

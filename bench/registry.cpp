@@ -25,6 +25,10 @@ Case opponent(Family family, Group group, const SceneSpec& scene, int count = 17
   return {.family = family, .group = group, .scene = scene, .design = {.rank = 1, .count = count}};
 }
 
+Case disc(const SceneSpec& scene, int samples, bool prefiltered) {
+  return {.family = Family::dermis_disc, .scene = scene, .disc = {.samples = samples, .prefiltered = prefiltered}};
+}
+
 SceneSpec sized(SceneSpec scene, std::pair<int, int> size) {
   std::tie(scene.width, scene.height) = size;
   return scene;
@@ -48,6 +52,9 @@ void add_methods(std::vector<Case>& cases) {
   for (const int count : {7, 17, 25}) cases.push_back({.design = optimised(1, count), .sheared = false});
   cases.push_back({.design = optimised(2, 17), .sheared = false});
   cases.push_back({.design = {.model = Model::gaussians, .rank = 4, .count = 17}});
+  for (const int samples : {21, 55}) {
+    for (const bool prefiltered : {false, true}) cases.push_back(disc(sized({}, sizes[0]), samples, prefiltered));
+  }
   cases.push_back({.family = Family::dermis_exact, .scene = sized({}, {320, 180})});
   for (const Family family : {Family::naive, Family::rule_2012}) {
     for (const int count : {17, 25}) cases.push_back(opponent(family, Group::methods, {}, count));
@@ -117,6 +124,9 @@ void add_all_methods(std::vector<Case>& cases, const SceneSpec& scene) {
   }
   cases.push_back({.scene = scene, .memory = Memory::interleaved_f16});
   cases.push_back({.scene = scene, .tolerance = 0.01});
+  for (const int samples : {21, 55, 128}) {
+    for (const bool prefiltered : {false, true}) cases.push_back(disc(scene, samples, prefiltered));
+  }
   cases.push_back({.family = Family::dermis_exact, .scene = scene});
   std::vector<Family> opponents = {Family::naive, Family::rule_2012};
   if (scene.geometry == Geometry::flat) opponents.insert(opponents.end(), {Family::simd, Family::simd_depth});

@@ -3,16 +3,13 @@
 #pragma OPENCL FP_CONTRACT OFF
 #include "linear_table.h"
 #include "load.h"
+#include "own_share.h"
 #include "tangent.h"
 
 // Gauss-Legendre points and weights on [-1/2, 1/2].
 constant float points_2[2] = {-0.288675135f, 0.288675135f};
 constant float points_4[4] = {-0.430568156f, -0.169990522f, 0.169990522f, 0.430568156f};
 constant float weights_4[4] = {0.173927423f, 0.326072577f, 0.326072577f, 0.173927423f};
-constant float points_8[8] = {-0.480144928f, -0.398333239f, -0.262766205f, -0.0917173212f,
-                              0.0917173212f, 0.262766205f,  0.398333239f,  0.480144928f};
-constant float weights_8[8] = {0.0506142681f, 0.111190517f, 0.156853323f, 0.181341892f,
-                               0.181341892f,  0.156853323f, 0.111190517f, 0.0506142681f};
 
 // Pixels this near on both axes are integrated over 4 x 4 or 2 x 2 points.
 #define NEAR_4 2
@@ -30,12 +27,9 @@ kernel void slopes(struct FrameParams f, struct WindowParams window, global ucha
     const Points p = points_at(&f, load_floats(w.depth + at), x, y);
     const vfloat slope_x = depth_slope(&f, &w, x, y, 1, 0);
     const vfloat slope_y = depth_slope(&f, &w, x, y, 0, 1);
-    const Tangent a = tangent_x(&f, &p, slope_x);
-    const Tangent b = tangent_y(&f, &p, slope_y);
-    const Tangent normal = {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
     store_floats(geometry + at, slope_x);
     store_floats(geometry + plane + at, slope_y);
-    vfloat area = sqrt(squared_length(normal));
+    vfloat area = patch_area(tangent_x(&f, &p, slope_x), tangent_y(&f, &p, slope_y));
 #if HAS_MATTE
     area *= share_of_surface(row_of(matte, &matte_at, f.width, y, 0), x);
 #endif
@@ -47,12 +41,6 @@ typedef struct {
   vrgb light;
   vrgb weight;
 } Sum;
-
-static inline void add(vrgb* sum, vrgb value) {
-  sum->r += value.r;
-  sum->g += value.g;
-  sum->b += value.b;
-}
 
 // R averaged over the patch of the pixels (dx, dy) away, by n x n quadrature points.
 static inline vrgb patch_average(const struct FrameParams* f, const Points* p, global const float4* tables,
@@ -74,25 +62,6 @@ static inline vrgb patch_average(const struct FrameParams* f, const Points* p, g
     }
   }
   return sum;
-}
-
-// Light that stays on the pixel's own patch: the integral of the cumulated profile at the patch's edge over the angle.
-static inline vrgb own_share(const struct FrameParams* f, const Points* p, global const float4* tables,
-                             struct TableParams cumulated, vrgb reciprocal, vfloat slope_x, vfloat slope_y,
-                             vfloat area) {
-  const Tangent a = tangent_x(f, p, slope_x);
-  const Tangent b = tangent_y(f, p, slope_y);
-  vrgb share = {(vfloat)(0.0f), (vfloat)(0.0f), (vfloat)(0.0f)};
-  for (int i = 0; i < 16; ++i) {
-    // Two of the four edges; the other two are their mirror images.
-    const float s = i < 8 ? 0.5f : points_8[i - 8];
-    const float t = i < 8 ? points_8[i] : 0.5f;
-    const Tangent edge = {s * a.x + t * b.x, s * a.y + t * b.y, s * a.z + t * b.z};
-    const vfloat r_squared = squared_length(edge);
-    const vfloat angle = weights_8[i & 7] * 0.5f * area / r_squared;
-    add(&share, times(look_up_linear_scaled(tables, cumulated, r_squared, reciprocal), angle * M_1_PI_F));
-  }
-  return share;
 }
 
 // The half-extents, px, of all pixels whose points can lie within r_mm of those of the lanes in the mask.

@@ -42,7 +42,8 @@ typedef long long Bytes;
 #define COUNTER_SMOOTH 6
 #define COUNTER_CHANNELS 7
 #define COUNTER_TILE_HEIGHT 8
-#define RUN_COUNTERS 9
+#define COUNTER_UNLIT 9
+#define RUN_COUNTERS 10
 
 // Tiles with something to scatter that every worker should get, so that all end at about the same time.
 #define TILES_PER_WORKER 6
@@ -63,6 +64,12 @@ typedef long long Bytes;
 
 // Directions of the rotation of tap axes.
 #define ROTATIONS 256
+
+// Shares of the light from which on the samples of a disc may begin: i / DISC_STARTS.
+#define DISC_STARTS 16
+
+// Blocks of 1, 2, 4, ... pixels a side that the samples of a disc may stand for.
+#define MOST_TEXEL_LEVELS 9
 
 // Format of a value, as dermis::Format.
 #define FORMAT_F16 0
@@ -238,6 +245,44 @@ struct RotationParams {
   int sine_x;
   int sine_y;
   int padding;
+};
+
+// A pixel, or a block of pixels, as samples of a disc read it.
+struct TexelParams {
+  float light[3];
+  float area;              // of surface per pixel, mm^2
+  float depth;             // in the middle, mm
+  float slope_x, slope_y;  // of depth, mm per px
+  int material;            // 1 + its index; 0 where it gives no light, or not all of a block does
+};
+
+// Where they lie: a level has width >> level columns, and height >> level rows.
+struct TexelLevels {
+  Bytes first[MOST_TEXEL_LEVELS];  // texels
+  Bytes texels;                    // of all levels
+  int count;
+  int padding;
+};
+
+// One sample of a disc, in the plane of the disc, for a profile as wide as that of the material.
+struct SampleParams {
+  float x_mm, y_mm;
+  float area_mm2;    // that it stands for
+  float spacing_mm;  // the root of that
+};
+
+// The samples of a material: few of them for narrow kernels, and all; of each DISC_STARTS sets.
+struct DiscParams {
+  int first_sample[2];
+  float reach_mm;                  // no sample reads farther
+  float inner_mm[2][DISC_STARTS];  // no sample of the set lies nearer, nor does what it stands for
+};
+
+// How many samples, and of what.
+struct DiscCounts {
+  int samples[2];  // as in DiscParams; of the first none if all pixels have as many
+  int seeds;
+  unsigned int seed;
 };
 
 #endif

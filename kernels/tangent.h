@@ -40,6 +40,12 @@ static inline Tangent tangent_y(const struct FrameParams* f, const Points* p, vf
 
 static inline vfloat squared_length(Tangent t) { return fma(t.x, t.x, fma(t.y, t.y, t.z * t.z)); }
 
+// Of the patch of a pixel, whose sides they are.
+static inline vfloat patch_area(Tangent x, Tangent y) {
+  const Tangent normal = {x.y * y.z - x.z * y.y, x.z * y.x - x.x * y.z, x.x * y.y - x.y * y.x};
+  return sqrt(squared_length(normal));
+}
+
 #if SHEARED
 // Columns per row: at a right angle to (1, 0).
 static inline vfloat shear_of(Tangent x, Tangent y) {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <limits>
@@ -21,11 +22,15 @@ namespace {
 
 void add_method_arguments(CLI::App& app, FilterArguments& arguments) {
   Options& options = arguments.options;
-  app.add_option("--method", arguments.method, "separable, or exact: the slow integral over the surface")
-      ->check(one_of({"separable", "exact"}))
+  app.add_option(
+         "--method", arguments.method,
+         "separable; exact: the slow integral over the surface; disc: samples of it, with noise, on a disc about "
+         "each pixel (Golubev 2018)")
+      ->check(one_of({"separable", "exact", "disc"}))
       ->default_str("separable");
   add_quality_arguments(app, arguments.quality);
   add_design_arguments(app, arguments.design);
+  add_disc_arguments(app, arguments.disc);
   app.add_option(
          "--shear", arguments.shear,
          "whether the vertical pass crosses the horizontal one at a right angle on the surface, not on the "
@@ -37,7 +42,7 @@ void add_method_arguments(CLI::App& app, FilterArguments& arguments) {
       ->check(number_0_to_1())
       ->capture_default_str();
   constexpr std::int64_t max_seed = std::numeric_limits<std::uint32_t>::max();
-  app.add_option("--seed", options.seed, "of the rotation")
+  app.add_option("--seed", options.seed, "of the rotation, of taps or of discs")
       ->check(whole_number([](std::int64_t seed) { return seed >= 0 && seed <= max_seed; },
                            "a whole number from 0 to 4294967295"))
       ->capture_default_str();
@@ -122,6 +127,27 @@ void check_quality(const FilterArguments& arguments) {
     refuse("--shear", arguments.shear, fmt::format("--jitter {}", arguments.options.jitter), "off or auto with it");
 }
 
+/// Throws Error(usage) for options of discs without them, and for those of taps with discs.
+void check_discs(const FilterArguments& arguments) {
+  const auto refuse = [](const std::string& option, std::string_view beside, const char* wanted) {
+    const std::size_t space = std::min(option.find(' '), option.size());
+    const std::string value = space < option.size() ? option.substr(space + 1) : "it";
+    throw Error(ErrorCode::usage, option.substr(0, space), fmt::format("{} with --method {}", value, beside), wanted);
+  };
+  if (!is_disc(arguments)) {
+    const std::string disc = first_given(arguments.disc);
+    if (!disc.empty()) refuse(disc, is_exact(arguments) ? "exact" : "separable", "--method disc with it");
+    return;
+  }
+  constexpr const char* wanted = "--method separable with it";
+  const std::string design = first_given(arguments.design);
+  if (!design.empty()) refuse(design, "disc", wanted);
+  if (arguments.quality.given()) refuse(command_text(arguments.quality).substr(1), "disc", "--samples instead");
+  if (arguments.options.jitter > 0) refuse(fmt::format("--jitter {}", arguments.options.jitter), "disc", wanted);
+  if (arguments.shear != "auto") refuse("--shear " + arguments.shear, "disc", wanted);
+  if (!arguments.tile_map.empty()) refuse("--tile-map " + arguments.tile_map, "disc", wanted);
+}
+
 }  // namespace
 
 void add_filter_arguments(CLI::App& app, FilterArguments& arguments) {
@@ -184,8 +210,10 @@ bool is_exact(const FilterArguments& arguments) {
   return arguments.method == "exact" || arguments.quality.quality == reference_quality;
 }
 
+bool is_disc(const FilterArguments& arguments) { return arguments.method == "disc"; }
+
 bool is_automatic(const FilterArguments& arguments) {
-  return !is_exact(arguments) &&
+  return !is_exact(arguments) && !is_disc(arguments) &&
          (arguments.quality.given() || asks_for_automatic(arguments.design) || first_given(arguments.design).empty());
 }
 
@@ -208,10 +236,12 @@ Options options_of(const FilterArguments& arguments) {
         ErrorCode::usage, "--compare-methods",
         arguments.lighting == "lit" ? "--lighting lit" : fmt::format("--albedo-mix {}", arguments.options.albedo_mix),
         "raw light and no albedo mix, as the rule of 2012 knows of neither");
+  check_discs(arguments);
   check_quality(arguments);
   Options options = arguments.options;
   options.taps = design_of(arguments.design, is_automatic(arguments) ? tolerance_of(arguments.quality) : 0);
-  options.method = is_exact(arguments) ? Method::exact : Method::separable;
+  options.method = is_disc(arguments) ? Method::disc : is_exact(arguments) ? Method::exact : Method::separable;
+  options.disc = disc_options_of(arguments.disc);
   options.sheared = is_sheared(arguments);
   if (options.method == Method::exact && !arguments.tile_map.empty())
     throw Error(ErrorCode::usage, "--tile-map", arguments.tile_map + " with the exact method",
@@ -231,8 +261,11 @@ std::string command_text(const FilterArguments& arguments) {
   }
   if (!arguments.materials.profile.empty()) add("--profile", without_folders(arguments.materials.profile));
   if (picture.mm_per_unit) add("--mm-per-unit", *picture.mm_per_unit);
-  add("--method", is_exact(arguments) ? "exact" : "separable");
-  if (!is_exact(arguments)) {
+  add("--method", is_disc(arguments) ? "disc" : is_exact(arguments) ? "exact" : "separable");
+  if (is_disc(arguments)) {
+    text += command_text(disc_options_of(arguments.disc));
+    add("--seed", arguments.options.seed);
+  } else if (!is_exact(arguments)) {
     if (is_automatic(arguments)) text += command_text(arguments.quality);
     if (!is_automatic(arguments) || !first_given(arguments.design).empty())
       text += command_text(design_of(arguments.design, is_automatic(arguments) ? tolerance_of(arguments.quality) : 0));

@@ -7,6 +7,7 @@
 
 #include "dermis/plan.hpp"
 #include "design_arguments.hpp"
+#include "disc_arguments.hpp"
 #include "material_arguments.hpp"
 #include "picture_arguments.hpp"
 #include "quality_arguments.hpp"
@@ -31,6 +32,7 @@ struct FilterArguments {
   int threads = 0;
   std::string method;  ///< empty: what the quality asks for
   QualityArguments quality;
+  DiscArguments disc;
   DesignArguments design{.defaults = Options{}.taps, .may_be_automatic = true};
   std::string bad_pixels = "keep";
   std::string lighting = "raw";
@@ -47,7 +49,10 @@ std::vector<FilterArguments> one_by_one(const FilterArguments& arguments);
 /// True if the method is exact, by its name or by the quality.
 bool is_exact(const FilterArguments& arguments);
 
-/// True if a tolerance decides about taps: unless the method is exact or a design was asked for.
+/// True if the method is disc.
+bool is_disc(const FilterArguments& arguments);
+
+/// True if a tolerance decides about taps: unless the method has none or a design was asked for.
 bool is_automatic(const FilterArguments& arguments);
 
 /// The options of the plan. Throws Error(usage) for what the command line needs and lacks, and for what contradicts.

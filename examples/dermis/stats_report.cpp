@@ -16,7 +16,9 @@ namespace {
 
 using nlohmann::json;
 
-std::string_view name_of(Method method) { return method == Method::exact ? "exact" : "separable"; }
+std::string_view name_of(Method method) {
+  return method == Method::exact ? "exact" : method == Method::disc ? "disc" : "separable";
+}
 
 json json_of(const DeviceInfo& device) {
   return {{"name", device.name},
@@ -30,6 +32,14 @@ json json_of(const DeviceInfo& device) {
 }
 
 json or_null(const std::optional<double>& value) { return value ? json(*value) : json(nullptr); }
+
+json disc_of(const Options& options) {
+  if (options.method != Method::disc) return nullptr;
+  return {{"samples", options.disc.samples > 0 ? json(options.disc.samples) : json("auto")},
+          {"plane", options.disc.tangent_plane ? "tangent" : "screen"},
+          {"prefiltered", options.disc.prefiltered},
+          {"accumulate", options.disc.accumulate}};
+}
 
 json design_of(const MaterialReport& material) {
   if (!material.design) return nullptr;
@@ -116,6 +126,13 @@ std::string text_of(const StatsReport& report) {
   if (options.method == Method::separable) {
     text += fmt::format(", shear {}, jitter {}, seed {}", options.sheared ? "on" : "off", options.jitter, options.seed);
   }
+  if (options.method == Method::disc) {
+    const DiscOptions& disc = options.disc;
+    text += fmt::format(", {} samples, {} plane, {}accumulate {}, seed {}",
+                        disc.samples > 0 ? std::to_string(disc.samples) : "21 or 55",
+                        disc.tangent_plane ? "tangent" : "screen", disc.prefiltered ? "prefiltered, " : "",
+                        disc.accumulate, options.seed);
+  }
   if (!report.quality.empty()) text += fmt::format(", quality {}", report.quality);
   if (report.tolerance) text += fmt::format(", tolerance {}", *report.tolerance);
   text += '\n';
@@ -132,6 +149,7 @@ std::string text_of(const StatsReport& report) {
   text += counted("flat", stats.pixels_flat, stats.pixels);
   text += counted("smooth", stats.pixels_smooth, stats.pixels);
   text += counted("bad", stats.pixels_bad, stats.pixels);
+  if (options.method == Method::disc) text += counted("unlit", stats.pixels_unlit, stats.pixels);
   text += fmt::format("channels    {}\n", 3 * stats.pixels_scattered);
   text += counted("narrow", stats.channels_narrow, 3 * stats.pixels_scattered);
   return text + text_of_steps(report);
@@ -147,6 +165,7 @@ std::string json_text_of(const StatsReport& report) {
                  {"sheared", report.options.sheared},
                  {"jitter", report.options.jitter},
                  {"seed", report.options.seed},
+                 {"disc", disc_of(report.options)},
                  {"times_ms", times_of(report)},
                  {"camera", json_of(report.camera)},
                  {"roles", json_of(report.roles)},
@@ -164,7 +183,8 @@ std::string json_text_of(const StatsReport& report) {
                       {"flat", stats.pixels_flat},
                       {"smooth", stats.pixels_smooth},
                       {"narrow_channels", stats.channels_narrow},
-                      {"bad", stats.pixels_bad}};
+                      {"bad", stats.pixels_bad},
+                      {"unlit", stats.pixels_unlit}};
   for (const MaterialReport& material : report.materials) object["materials"].push_back(json_of(material));
   return json_text(object);
 }

@@ -19,7 +19,7 @@ struct MaterialReport {
   /// Size at the median depth, along the axis that has the smaller ones; none if no pixel is of the material.
   std::optional<double> pixel_mm;
   int widest_px = TapsDesign{}.widest_px;  ///< no kernel is wider, as far as that matters
-  std::optional<TapsDesign> design;        ///< none if the method is exact
+  std::optional<TapsDesign> design;        ///< none if the method has no taps
   std::optional<int> taps;                 ///< of the design for pixels of that size
   std::optional<double> predicted_rel_l2;  ///< of them, TapSet::predicted_rel_l2
 };

@@ -88,6 +88,9 @@ struct Frame {
   /// only m of the light there is the material's own, a pixel gives light as m^2 of a surface; what is written is
   /// (1 - m) of the light as it was and m of that after scattering.
   Image matte = {};
+  /// 3 channels, f16 or f32, of any length: across the surface, towards the camera, on axes to the right, down and away
+  /// from it. Method::disc takes the plane of its discs from it; where it is not finite or faces away, from depth.
+  Image normal = {};
   Image beauty = {};  ///< RGB, f16 or f32: the picture with all its light; needed for `result`
   Camera camera = {};
   double mm_per_unit = 1;  ///< millimetres per scene unit

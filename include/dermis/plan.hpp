@@ -34,6 +34,30 @@ struct Material {
 enum class Method {
   separable,  ///< a horizontal, then a vertical pass of taps, for every term of the design
   exact,      ///< the surface integral over all visible pixels of the material; slow
+  disc,       ///< samples of that integral on a disc about each pixel, as DiscOptions says
+};
+
+/// How Method::disc samples the surface integral (Golubev 2018). The distances of samples from a pixel are those within
+/// which even shares of the widest channel's light leave, their directions turn by the golden angle from each to the
+/// next, and by a random angle per pixel. A sample weighs R(distance on the surface) / density, times how much more
+/// surface than disc there is under it, over the sum of weights; what lies on other materials is left out. The pixel's
+/// own light weighs as the profile integrated over its patch, and the samples share the light beyond.
+///
+/// A sample reads the four pixels about it, by the shares of a square as large as the part of the disc that it stands
+/// for, which the lines between them cut. If that is as large as a pixel, this is bilinear interpolation, which blurs
+/// the light by about a pixel; where samples lie closer it comes to the nearest pixel, so that the result of ever more
+/// of them is the integral, and where they lie farther apart to the mean of four, which has less noise. Pixels that are
+/// not of the material have no share.
+struct DiscOptions {
+  /// Per pixel: 1..1024; 0: 21 for kernels within 4 x 4 pixels, 55 for those from 6 x 6 on, and both blended between.
+  int samples = 0;
+  bool tangent_plane = true;  ///< the disc touches the surface: Frame::normal, or the slopes of depth; else the screen
+  /// Samples that stand for more than a pixel read means over as much: blocks of 2 x 2, 4 x 4, ... pixels, where all of
+  /// one are of the material and nearly in a plane.
+  bool prefiltered = false;
+  int accumulate = 1;  ///< the mean of so many results, of Options::seed and the seeds after it: 1..65536
+
+  bool operator==(const DiscOptions&) const = default;
 };
 
 /// What Frame::light holds.
@@ -52,12 +76,13 @@ enum class BadPixels {
 struct Options {
   Method method = Method::separable;
   TapsDesign taps = {.rank = 2};  ///< of every material that does not have its own
+  DiscOptions disc = {};          ///< of Method::disc, which has no taps
   /// The vertical pass crosses the horizontal one at a right angle on the surface instead of on the screen: see Taps.
   /// About half the error where a surface is tilted both ways, for up to twice the time of the cells that are; it
   /// counts only if there is depth, and no jitter.
   bool sheared = true;
   double jitter = 0;       ///< share of the kernel radius within which taps are rotated per pixel, 0..1
-  std::uint32_t seed = 0;  ///< of the rotation
+  std::uint32_t seed = 0;  ///< of the rotation, of taps or of discs
   Lighting lighting = Lighting::raw;
   double albedo_mix = 0;  ///< m in 0..1: albedo^m is put in before the passes, albedo^(1-m) after
   BadPixels bad_pixels = BadPixels::keep;
@@ -76,6 +101,7 @@ struct FrameDescription {
   bool mask = false;
   bool albedo = false;
   bool matte = false;
+  bool normal = false;
 
   /// The description of a frame.
   static FrameDescription of(const Frame& frame) {
@@ -83,7 +109,8 @@ struct FrameDescription {
             .material = static_cast<bool>(frame.material),
             .mask = static_cast<bool>(frame.mask),
             .albedo = static_cast<bool>(frame.albedo),
-            .matte = static_cast<bool>(frame.matte)};
+            .matte = static_cast<bool>(frame.matte),
+            .normal = static_cast<bool>(frame.normal)};
   }
   bool operator==(const FrameDescription&) const = default;
 };
@@ -118,7 +145,7 @@ struct Stats {
   double finish_ms = 0;    ///< outputs that had to wait for the passes
   double total_ms = 0;     ///< wall clock, transfers included
 
-  TileMap tiles;  ///< empty if the method is exact or the device works pixel by pixel
+  TileMap tiles;  ///< empty if the method is not separable or the device works pixel by pixel
 
   std::int64_t pixels = 0;
   std::int64_t pixels_scattered = 0;  ///< those that are bad included
@@ -128,6 +155,7 @@ struct Stats {
   std::int64_t pixels_smooth = 0;    ///< of the others, on cells that need not the depth of taps in either pass
   std::int64_t channels_narrow = 0;  ///< of pixels scattered whose cell shows one material: spread below half a pixel
   std::int64_t pixels_bad = 0;       ///< light or albedo not finite; counted where tiles are filtered
+  std::int64_t pixels_unlit = 0;     ///< of those scattered by discs: skipped, without light within reach
 
   /// Tiles of one kind.
   std::int64_t count(TileKind kind) const { return std::count(tiles.kinds.begin(), tiles.kinds.end(), kind); }
@@ -189,8 +217,8 @@ class Plan {
 
   /// The same for the next frame of a sequence: tiles of which nothing within reach has changed since the last run with
   /// `reuse` take the light of that run, with the same bits. All is computed if there was none, if it was of another
-  /// plan, size, camera or scale or failed, and always if the method is exact or the device works pixel by pixel. Bad
-  /// pixels are counted, and refused, in tiles that are filtered.
+  /// plan, size, camera or scale or failed, and always if the method is not separable or the device works pixel by
+  /// pixel. Bad pixels are counted, and refused, in tiles that are filtered.
   Stats run(const Frame& frame, Reuse& reuse, const Progress& progress = {}) const;
 
   /// Puts the same work on the caller's queue, which is of the plan's context and device, to start after the events in

@@ -28,7 +28,7 @@ Extent extent_of(const FrameImage& image, int width, int height) {
 }
 
 /// Of each image by its name.
-constexpr std::array<int, image_count> channel_counts = {3, 3, 1, 1, 1, 1, 3, 3, 3};
+constexpr std::array<int, image_count> channel_counts = {3, 3, 1, 1, 1, 1, 3, 3, 3, 3};
 
 std::ptrdiff_t bytes_of_format(const params::ImageParams& image) {
   return static_cast<std::ptrdiff_t>(bytes_of(static_cast<Format>(image.format)));
@@ -127,17 +127,18 @@ std::array<FrameImage, image_count> check_frame(const Frame& frame, const FrameD
     }
   }
   const std::array<FrameImage, image_count> images = {
-      describe("light", 3, frame.light, frame.width),   describe("albedo", 3, frame.albedo, frame.width),
-      describe("depth", 1, frame.depth, frame.width),   describe("material", 1, frame.material, frame.width),
-      describe("mask", 1, frame.mask, frame.width),     describe("matte", 1, frame.matte, frame.width),
-      describe("beauty", 3, frame.beauty, frame.width), describe("scattered", 3, frame.scattered, frame.width),
-      describe("result", 3, frame.result, frame.width)};
+      describe("light", 3, frame.light, frame.width),         describe("albedo", 3, frame.albedo, frame.width),
+      describe("depth", 1, frame.depth, frame.width),         describe("material", 1, frame.material, frame.width),
+      describe("mask", 1, frame.mask, frame.width),           describe("matte", 1, frame.matte, frame.width),
+      describe("normal", 3, frame.normal, frame.width),       describe("beauty", 3, frame.beauty, frame.width),
+      describe("scattered", 3, frame.scattered, frame.width), describe("result", 3, frame.result, frame.width)};
   const std::array<bool, image_count> described = {true,
                                                    description.albedo,
                                                    description.depth,
                                                    description.material,
                                                    description.mask,
                                                    description.matte,
+                                                   description.normal,
                                                    static_cast<bool>(frame.result),
                                                    false,
                                                    false};

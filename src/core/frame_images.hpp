@@ -10,8 +10,8 @@
 
 namespace dermis {
 
-enum class ImageName { light, albedo, depth, material, mask, matte, beauty, scattered, result };
-inline constexpr int image_count = 9;
+enum class ImageName { light, albedo, depth, material, mask, matte, normal, beauty, scattered, result };
+inline constexpr int image_count = 10;
 
 /// One image of a frame, whatever it is for.
 struct FrameImage {

@@ -9,6 +9,7 @@
 #include <memory>
 
 #include "core/device_cache.hpp"
+#include "core/disc_tables.hpp"
 #include "core/linear_table.hpp"
 
 namespace dermis {
@@ -150,6 +151,14 @@ TapsDesign with_rank(const Device& device, const Profile& profile, const TapsDes
   return cache_of(device).designs.get({profile, design}, [&] { return with_rank(profile, design); });
 }
 
+/// The taps of a material. Discs have none: the plainest ones tell them how wide kernels are.
+TapsDesign design_of(const Material& material, const Options& options) {
+  if (options.method == Method::disc) {
+    return {.model = Model::pre_integrated, .rank = 1, .count = 3, .placement = Placement::importance};
+  }
+  return material.taps.value_or(options.taps);
+}
+
 std::shared_ptr<const Taps> fitted_taps(const Device& device, const Profile& profile, const TapsDesign& design) {
   const TapsDesign ranked = with_rank(device, profile, design);
   return cache_of(device).taps.get({profile, ranked},
@@ -161,7 +170,7 @@ std::shared_ptr<const Taps> fitted_taps(const Device& device, const Profile& pro
 int most_terms(const Device& device, const std::vector<Material>& materials, const Options& options) {
   int most = 1;
   for (const Material& material : materials) {
-    most = std::max(most, with_rank(device, material.profile, material.taps.value_or(options.taps)).rank);
+    most = std::max(most, with_rank(device, material.profile, design_of(material, options)).rank);
   }
   return most;
 }
@@ -172,9 +181,8 @@ MaterialTables make_material_tables(const Device& device, const std::vector<Mate
   std::vector<std::future<std::shared_ptr<const Taps>>> fits;
   fits.reserve(materials.size());
   for (const Material& material : materials) {
-    fits.push_back(std::async(std::launch::async, [&] {
-      return fitted_taps(device, material.profile, material.taps.value_or(options.taps));
-    }));
+    fits.push_back(std::async(std::launch::async,
+                              [&] { return fitted_taps(device, material.profile, design_of(material, options)); }));
   }
   for (std::size_t i = 0; i < materials.size(); ++i) {
     const Profile& profile = materials[i].profile;
@@ -190,10 +198,18 @@ MaterialTables make_material_tables(const Device& device, const std::vector<Mate
     row.first_term = static_cast<int>(tables.terms.size());
     for (const Rung& rung : taps.rungs) append_rung(rung, taps, options.jitter, terms, tables);
     append_terms(taps, terms, tables);
-    if (options.method == Method::exact) append_exact_tables(profile, row, tables);
+    if (options.method != Method::separable) append_exact_tables(profile, row, tables);
+    if (options.method == Method::disc) {
+      const auto widest = std::max_element(taps.relative_width.begin(), taps.relative_width.end());
+      const auto channel = static_cast<int>(widest - taps.relative_width.begin());
+      append_disc(profile, channel, options.disc, tables.discs, tables.samples);
+    }
     tables.materials.push_back(row);
   }
-  if (tables.nodes.empty()) tables.nodes.push_back({});  // a buffer has at least one byte
+  // A buffer has at least one byte.
+  if (tables.nodes.empty()) tables.nodes.push_back({});
+  if (tables.discs.empty()) tables.discs.push_back({});
+  if (tables.samples.empty()) tables.samples.push_back({});
   return tables;
 }
 

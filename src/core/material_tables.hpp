@@ -10,8 +10,8 @@
 
 namespace dermis {
 
-/// Flat arrays for upload. `nodes` are the tables of the exact integral: R(r), and the light within the disc of radius
-/// r.
+/// Flat arrays for upload. `nodes` are the tables of the exact integral, and of its samples: R(r), and the light within
+/// the disc of radius r.
 struct MaterialTables {
   std::vector<params::MaterialParams> materials;
   std::vector<params::TermParams> terms;
@@ -21,6 +21,8 @@ struct MaterialTables {
   std::vector<params::FlatWeight> flat_weights;
   std::vector<params::SmoothWeight> smooth_weights;
   std::vector<std::array<float, 4>> nodes;
+  std::vector<params::DiscParams> discs;
+  std::vector<params::SampleParams> samples;
   int farthest_px = 0;  ///< offset of the farthest tap
 };
 

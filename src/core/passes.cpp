@@ -8,13 +8,14 @@
 #include <string>
 #include <utility>
 
+#include "core/disc_tables.hpp"
 #include "core/program.hpp"
 
 namespace dermis {
 
 namespace {
 
-constexpr int rows_per_exact_step_px = 16;  ///< where a work-item is one pixel
+constexpr int rows_per_step_px = 16;  ///< of a method that takes long
 
 template <class... Arguments>
 void set_arguments(cl::Kernel& kernel, const Arguments&... arguments) {
@@ -49,6 +50,16 @@ params::FrameParams frame_params(const Frame& frame, const Options& options, con
   p.albedo_mix = static_cast<float>(options.albedo_mix);
   p.widest_turn = static_cast<float>(std::max({1.0, camera.scale_y / camera.scale_x, camera.scale_x / camera.scale_y}));
   return p;
+}
+
+/// The cosine and the sine of multiples of 2 pi / 256.
+std::array<std::array<float, 2>, ROTATIONS> disc_turns() {
+  std::array<std::array<float, 2>, ROTATIONS> turns{};
+  for (int i = 0; i < ROTATIONS; ++i) {
+    const double angle = 2 * std::numbers::pi * i / ROTATIONS;
+    turns[i] = {static_cast<float>(std::cos(angle)), static_cast<float>(std::sin(angle))};
+  }
+  return turns;
 }
 
 /// The axes turned by multiples of 2 pi / 256, in whole 1/4096 px so that every device rounds alike. Lengths in mm are
@@ -93,7 +104,8 @@ RunSizes run_sizes(const Plan::State& plan, int width, int height) {
   sizes.side_px = plan.is_sheared ? MOST_SIDE : 0;
   sizes.farthest_px = plan.farthest_px;
   sizes.has_pixel_width = plan.has_pixel_width;
-  sizes.exact = options.method == Method::exact;
+  sizes.method = options.method;
+  sizes.texel_levels = options.disc.prefiltered ? MOST_TEXEL_LEVELS : 1;
   return sizes;
 }
 
@@ -126,7 +138,10 @@ Passes::Passes(const Plan::State& plan, const Frame& frame, const BoundImages& i
   }
   if (holds_ && reuse_ == nullptr) memory.need_held(context);
   held_ = reuse_ != nullptr ? reuse_->held : memory.held;
-  if (plan.options.jitter > 0) {
+  if (plan.options.method == Method::disc) {
+    auto table = disc_turns();
+    rotations_ = cl::Buffer(context, CL_MEM_READ_ONLY | CL_MEM_COPY_HOST_PTR, sizeof(table), table.data());
+  } else if (plan.options.jitter > 0) {
     auto table = rotations(frame.camera);
     rotations_ = cl::Buffer(context, CL_MEM_READ_ONLY | CL_MEM_COPY_HOST_PTR, sizeof(table), table.data());
   } else {
@@ -197,7 +212,9 @@ void Passes::prepare() {
                 memory_.windows, plane, columns, memory_.counters);
   const int items = plan_.item_is_pixel ? memory_.sizes.stride() : 1;
   events_.classify.push_back(launch(prepare, items, params_.height, plan_.item_is_pixel ? 0 : 1));
-  if (plan_.options.method == Method::exact) {
+  if (plan_.options.method == Method::disc) {
+    prepare_discs(plane);
+  } else if (plan_.options.method == Method::exact) {
     cl::Kernel slopes(plan_.program, "slopes");
     set_arguments(slopes, params_, window_, memory_.windows, plane, images_.buffer(ImageName::matte),
                   images_.layout(ImageName::matte), memory_.between, columns);
@@ -210,15 +227,38 @@ void Passes::prepare() {
   }
 }
 
+void Passes::prepare_discs(cl_long plane) {
+  const params::TexelLevels levels = memory_.sizes.levels();
+  const int local = plan_.item_is_pixel ? 0 : 1;
+  cl::Kernel texels(plan_.program, "texels");
+  set_arguments(texels, params_, window_, memory_.windows, plane, images_.buffer(ImageName::matte),
+                images_.layout(ImageName::matte), memory_.between, plan_.item_is_pixel ? 1 : params_.width);
+  events_.classify.push_back(launch(texels, runs(), params_.height, local));
+  for (int level = 1; level < levels.count; ++level) {
+    const int columns = params_.width >> level;
+    cl::Kernel halve(plan_.program, "halve_texels");
+    set_arguments(halve, params_, levels, level, memory_.between, plan_.item_is_pixel ? 1 : columns);
+    events_.classify.push_back(launch(halve, plan_.item_is_pixel ? columns : 1, params_.height >> level, local));
+  }
+  cl::Kernel light(plan_.program, "light_cells");
+  set_arguments(light, params_, memory_.between, memory_.segments);
+  events_.classify.push_back(launch(light, params_.cells_x, params_.cells_y, local));
+  cl::Kernel dark(plan_.program, "dark_cells");
+  set_arguments(dark, params_, plan_.discs, memory_.cells, memory_.segments);
+  events_.classify.push_back(launch(dark, params_.cells_x, params_.cells_y, local));
+}
+
 int Passes::scatter_steps() const {
-  return plan_.options.method == Method::exact ? (params_.height + rows_per_exact_step_px - 1) / rows_per_exact_step_px
-                                               : 1;
+  return plan_.options.method == Method::separable ? 1 : (params_.height + rows_per_step_px - 1) / rows_per_step_px;
 }
 
 void Passes::scatter(int step) {
+  const int first_row = step * rows_per_step_px;
+  const int rows = std::min(rows_per_step_px, params_.height - first_row);
   if (plan_.options.method == Method::exact) {
-    const int first_row = step * rows_per_exact_step_px;
-    scatter_exactly(first_row, std::min(rows_per_exact_step_px, params_.height - first_row));
+    scatter_exactly(first_row, rows);
+  } else if (plan_.options.method == Method::disc) {
+    scatter_discs(first_row, rows);
   } else if (plan_.tiled) {
     scatter_tiles();
   } else {
@@ -271,6 +311,18 @@ void Passes::scatter_exactly(int first_row, int rows) {
   events_.scatter.push_back(launch(kernel, runs(), rows, plan_.item_is_pixel ? 0 : 1));
 }
 
+void Passes::scatter_discs(int first_row, int rows) {
+  const Options& options = plan_.options;
+  const params::DiscCounts counts = disc_counts(options.disc, options.seed);
+  cl::Kernel kernel(plan_.program, "disc");
+  set_arguments(kernel, params_, window_, first_row, plan_.materials, plan_.nodes, plan_.discs, plan_.samples, counts,
+                rotations_, memory_.windows, static_cast<cl_long>(memory_.sizes.frame_plane()), memory_.sizes.levels(),
+                memory_.between, memory_.segments,                                     //
+                images_.buffer(ImageName::normal), images_.layout(ImageName::normal),  //
+                plan_.item_is_pixel ? 1 : params_.width, memory_.held, memory_.counters);
+  events_.scatter.push_back(launch(kernel, runs(), rows, plan_.item_is_pixel ? 0 : 1));
+}
+
 void Passes::finish() {
   if (plan_.tiled && !holds_) return;
   cl::Kernel kernel(plan_.program, "finish");
@@ -308,6 +360,7 @@ void Passes::add_to(Stats& stats) const {
   stats.pixels_smooth = counted[COUNTER_SMOOTH];
   stats.channels_narrow = counted[COUNTER_CHANNELS];
   stats.pixels_bad = counted[COUNTER_BAD];
+  stats.pixels_unlit = counted[COUNTER_UNLIT];
   if (!plan_.tiled) return;
   TileMap& tiles = stats.tiles;
   const int tile_height = counted[COUNTER_TILE_HEIGHT];

@@ -53,6 +53,8 @@ class Passes {
   void scatter_tiles();
   void scatter_pixels();
   void scatter_exactly(int first_row, int rows);
+  void prepare_discs(cl_long plane);
+  void scatter_discs(int first_row, int rows);
   std::array<int, RUN_COUNTERS> counters() const;
   int runs() const;  ///< work-items per row of a frame-wide kernel
 

@@ -8,6 +8,7 @@
 #include <sstream>
 #include <string>
 
+#include "core/disc_tables.hpp"
 #include "core/frame_images.hpp"
 #include "core/material_tables.hpp"
 #include "core/passes.hpp"
@@ -33,6 +34,17 @@ void check_options(const Options& options) {
   if (options.tile_height < 0 || options.tile_height > largest_tile_px) {
     throw Error(ErrorCode::usage, "tile_height", std::to_string(options.tile_height), "0..65536");
   }
+}
+
+void check_disc(const DiscOptions& disc) {
+  const auto check = [](int value, const char* argument, int least, int most) {
+    if (value < least || value > most) {
+      throw Error(ErrorCode::usage, argument, std::to_string(value),
+                  std::to_string(least) + ".." + std::to_string(most));
+    }
+  };
+  check(disc.samples, "disc samples", 0, most_disc_samples);
+  check(disc.accumulate, "disc accumulate", 1, 1 << 16);
 }
 
 void check_designs(const std::vector<Material>& materials, const Options& options) {
@@ -80,11 +92,27 @@ std::string common_options(const Plan::State& state, int materials) {
          define("SHEARED", state.is_sheared ? 1 : 0) + bounds.str();
 }
 
-int vector_width(const Plan::State& state) { return state.item_is_pixel ? 1 : state.device.info().vector_width; }
+/// Samples of a disc lie anywhere, so that its pixels are computed one by one.
+int vector_width(const Plan::State& state) {
+  return state.item_is_pixel || state.options.method == Method::disc ? 1 : state.device.info().vector_width;
+}
 
 /// Every program costs PoCL 25 ms from its cache on disk, and 200 ms without, for headers and the library of built-in
 /// functions: all kernels are in one if they have vectors of the same width.
 bool is_one_program(const Plan::State& state) { return vector_width(state) == CELL; }
+
+/// The files of a method that works on windows that are the frame.
+std::vector<std::string> files_of(Method method) {
+  switch (method) {
+    case Method::exact:
+      return {"prepare.cl", "exact.cl"};
+    case Method::disc:
+      return {"prepare.cl", "disc_texels.cl", "disc.cl"};
+    case Method::separable:
+      break;
+  }
+  return {"prepare.cl", "pixel.cl"};
+}
 
 cl::Program build_classification(const Plan::State& state) {
   return build_program(state.device, {"survey.cl"}, state.build_options + define("V", CELL));
@@ -96,14 +124,15 @@ cl::Program build_passes(const Plan::State& state) {
   if (state.tiled) {
     files.emplace_back("tile.cl");
   } else {
-    files.emplace_back("prepare.cl");
-    files.emplace_back(state.options.method == Method::exact ? "exact.cl" : "pixel.cl");
+    for (const std::string& file : files_of(state.options.method)) files.push_back(file);
   }
   if (is_one_program(state)) files.emplace_back("survey.cl");
   return build_program(state.device, files,
                        state.build_options + define("V", vector_width(state)) +
                            define("TERMS", state.terms_per_material) + define("TILED", state.tiled ? 1 : 0) +
                            define("LIT", state.options.lighting == Lighting::lit ? 1 : 0) +
+                           define("TANGENT_DISC", state.options.disc.tangent_plane ? 1 : 0) +
+                           define("HAS_NORMAL", state.description.normal ? 1 : 0) +
                            define("TABLE_SHIFT", 23 - log2_nodes_per_octave_of_exact));
 }
 
@@ -159,6 +188,7 @@ void run_on_black(const Plan& plan, const FrameDescription& frames) {
               .material = frames.material ? image : none,
               .mask = frames.mask ? image : none,
               .matte = frames.matte ? image : none,
+              .normal = frames.normal ? image : none,
               .camera = Camera::orthographic(1, 1),
               .scattered = {.host = out.data()}};
   plan.run(frame);
@@ -188,6 +218,7 @@ Plan::Plan(const Device& device, std::vector<Material> materials, const FrameDes
   check_options(options);
   check_materials(materials, frames, options);
   check_designs(materials, options);
+  check_disc(options.disc);
   const bool follows_albedo = std::any_of(materials.begin(), materials.end(),
                                           [](const Material& m) { return m.profile.width_follows_albedo(); });
   auto state = std::make_unique<State>(device);
@@ -217,6 +248,8 @@ Plan::Plan(const Device& device, std::vector<Material> materials, const FrameDes
     state->flat_weights = upload(context, tables.flat_weights);
     state->smooth_weights = upload(context, tables.smooth_weights);
     state->nodes = upload(context, tables.nodes);
+    state->discs = upload(context, tables.discs);
+    state->samples = upload(context, tables.samples);
     state->classify_program = classification.get();
     state->program = passes.get();
   });

@@ -27,6 +27,8 @@ struct Plan::State {
   cl::Buffer flat_weights;
   cl::Buffer smooth_weights;
   cl::Buffer nodes;
+  cl::Buffer discs;
+  cl::Buffer samples;
   int terms_per_material = 1;
   int farthest_px = 0;           ///< no tap lies farther away
   bool has_pixel_width = false;  ///< a mask or an albedo scales the profile of each pixel

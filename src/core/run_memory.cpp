@@ -64,15 +64,36 @@ std::size_t RunSizes::windows_bytes() const {
           band_bytes + across_plane() / CELL * sizeof(params::ChoiceParams));
 }
 
+params::TexelLevels RunSizes::levels() const {
+  params::TexelLevels levels{};
+  std::size_t texels = 0;
+  while (levels.count < texel_levels && (width >> levels.count) > 0 && (height >> levels.count) > 0) {
+    levels.first[levels.count] = static_cast<params::Bytes>(texels);
+    texels += static_cast<std::size_t>(width >> levels.count) * (height >> levels.count);
+    ++levels.count;
+  }
+  levels.texels = static_cast<params::Bytes>(texels);
+  return levels;
+}
+
+std::size_t RunSizes::between_bytes() const {
+  if (method == Method::disc) return static_cast<std::size_t>(levels().texels) * sizeof(params::TexelParams);
+  return 3 * static_cast<std::size_t>(method == Method::exact ? 1 : terms) * frame_plane() * sizeof(float);
+}
+
+std::size_t RunSizes::segments_bytes() const {
+  if (method == Method::disc) return 2 * static_cast<std::size_t>(cells_x()) * cells_y();
+  return method == Method::exact ? 0 : frame_plane() * sizeof(float);
+}
+
 std::size_t RunSizes::held_bytes() const { return 3 * frame_plane() * sizeof(float); }
 
 std::size_t RunSizes::bytes(bool holds) const {
   const std::size_t cells = static_cast<std::size_t>(cells_x()) * cells_y();
   const std::size_t tiles = static_cast<std::size_t>(tiles_x()) * tiles_y(least_tile_height);
-  const std::size_t plane_bytes = frame_plane() * sizeof(float);
   std::size_t sum =
       frame_plane() + cells * (sizeof(params::CellParams) + sizeof(params::CellPasses)) + windows_bytes() + tiles;
-  if (workers == 0) sum += (exact ? 3 : 3 * static_cast<std::size_t>(terms) + 1) * plane_bytes;
+  if (workers == 0) sum += between_bytes() + segments_bytes();
   if (holds || workers == 0) sum += held_bytes();
   return sum;
 }
@@ -80,7 +101,6 @@ std::size_t RunSizes::bytes(bool holds) const {
 RunMemory::RunMemory(const cl::Context& context, const RunSizes& wanted) : sizes(wanted) {
   const auto allocate = [&](std::size_t bytes) { return cl::Buffer(context, CL_MEM_READ_WRITE, bytes); };
   const std::size_t cell_count = static_cast<std::size_t>(sizes.cells_x()) * sizes.cells_y();
-  const std::size_t plane_bytes = sizes.frame_plane() * sizeof(float);
   surface = allocate(sizes.frame_plane());
   cells = allocate(cell_count * sizeof(params::CellParams));
   passes = allocate(cell_count * sizeof(params::CellPasses));
@@ -92,8 +112,8 @@ RunMemory::RunMemory(const cl::Context& context, const RunSizes& wanted) : sizes
   held = kinds;
   if (sizes.workers > 0) return;
   held = allocate(sizes.held_bytes());
-  between = allocate((sizes.exact ? 3 : 3 * static_cast<std::size_t>(sizes.terms)) * plane_bytes);
-  if (!sizes.exact) segments = allocate(plane_bytes);
+  between = allocate(sizes.between_bytes());
+  if (sizes.segments_bytes() > 0) segments = allocate(sizes.segments_bytes());
 }
 
 void RunMemory::need_held(const cl::Context& context) {

@@ -22,7 +22,8 @@ struct RunSizes {
   int farthest_px;                     ///< no tap is farther
   int side_px;                         ///< taps of the vertical pass that are not turned lie no more columns away
   bool has_pixel_width, turns_taps;
-  bool exact;
+  Method method;
+  int texel_levels;  ///< of the disc method
 
   int stride() const;  ///< of planes as large as the frame, elements
   int cells_x() const;
@@ -33,6 +34,9 @@ struct RunSizes {
   std::size_t across_plane() const;  ///< of the window of the horizontal pass
   std::size_t down_plane() const;    ///< of the window of the vertical pass; 0 if the window is the frame
   std::size_t windows_bytes() const;
+  params::TexelLevels levels() const;
+  std::size_t between_bytes() const;
+  std::size_t segments_bytes() const;
   std::size_t held_bytes() const;       ///< of light that waits for its output
   std::size_t bytes(bool holds) const;  ///< of everything
   bool operator==(const RunSizes&) const = default;
@@ -45,8 +49,9 @@ struct RunMemory {
   cl::Buffer cells;    ///< CellParams
   cl::Buffer passes;   ///< CellPasses
   cl::Buffer windows;
-  cl::Buffer between;   ///< if the window is the frame: light between the passes, or the geometry of the exact integral
-  cl::Buffer segments;  ///< if the window is the frame: along y
+  cl::Buffer between;  ///< if the window is the frame: light between the passes, the geometry of the exact integral, or
+                       ///< what discs read
+  cl::Buffer segments;  ///< if the window is the frame: along y; of the disc method which cells are lit, then dark
   cl::Buffer held;      ///< light that has to wait for its output; made when needed
   cl::Buffer kinds;     ///< of tiles
   cl::Buffer counters;  ///< next tile, bad pixels

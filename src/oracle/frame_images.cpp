@@ -96,6 +96,7 @@ FrameImages read_images(const Frame& frame) {
           .material = load(frame.material, 1, "frame.material"),
           .mask = load(frame.mask, 1, "frame.mask"),
           .matte = load(frame.matte, 1, "frame.matte"),
+          .normal = load(frame.normal, 3, "frame.normal"),
           .beauty = load(frame.beauty, 3, "frame.beauty")};
 }
 

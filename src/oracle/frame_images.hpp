@@ -14,6 +14,7 @@ struct FrameImages {
   Picture material;
   Picture mask;
   Picture matte;
+  Picture normal;
   Picture beauty;
 };
 

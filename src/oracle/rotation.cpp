@@ -26,9 +26,12 @@ std::int32_t whole(std::int32_t value) { return (value + (1 << (fraction_bits - 
 
 }  // namespace
 
+int turn_of(int x, int y, std::uint32_t seed) {
+  return static_cast<int>(hash(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y), seed) >> 24);
+}
+
 Direction Direction::turned(Axis axis, int x, int y, std::uint32_t seed, const Camera& camera) {
-  const std::uint32_t k = hash(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y), seed) >> 24;
-  const double angle = 2 * std::numbers::pi * k / angles;
+  const double angle = 2 * std::numbers::pi * turn_of(x, y, seed) / angles;
   if (axis == horizontal)
     return {fixed_point(std::cos(angle)), fixed_point(std::sin(angle) * camera.scale_y / camera.scale_x)};
   return {fixed_point(-std::sin(angle) * camera.scale_x / camera.scale_y), fixed_point(std::cos(angle))};

@@ -9,6 +9,9 @@
 
 namespace dermis::oracle {
 
+/// Which of 256 angles belongs to the pixel.
+int turn_of(int x, int y, std::uint32_t seed);
+
 using PixelOffset = std::array<int, 2>;
 
 /// A direction in pixels, in units of 1/4096; it keeps its length in millimetres when it turns.

@@ -71,4 +71,16 @@ inline Bounded square_root(Bounded a) {
 /// The larger one: whichever the device takes, it is no further off than the worse of the two.
 inline Bounded larger(Bounded a, Bounded b) { return {std::max(a.value, b.value), std::max(a.error, b.error)}; }
 
+inline Bounded smaller(Bounded a, Bounded b) { return {std::min(a.value, b.value), std::max(a.error, b.error)}; }
+
+inline Bounded held_within(Bounded a, double least, double most) {
+  const double value = std::clamp(a.value, least, most);
+  return {value, std::max(std::clamp(a.high(), least, most) - value, value - std::clamp(a.low(), least, most))};
+}
+
+/// `a`, where a device may have `b` instead.
+inline Bounded including(Bounded a, Bounded b) {
+  return {a.value, std::max(a.error, std::abs(b.value - a.value) + b.error)};
+}
+
 }  // namespace dermis::oracle

@@ -33,9 +33,6 @@ void admit(Outcome& outcome, const Outcome& other) {
   }
 }
 
-/// The first one, with a bound that admits the other one.
-Bounded including(Bounded a, Bounded b) { return {a.value, std::max(a.error, std::abs(b.value - a.value) + b.error)}; }
-
 /// The sum over terms of scale times value, added up in any order.
 Bounded scaled_sum(const Outcome& values, std::span<const Term> terms, int c) {
   if (terms.size() == 1) return exact(terms[0].scale[c]) * values[0][c];

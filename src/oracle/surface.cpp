@@ -196,16 +196,29 @@ Bend Surface::bend(int x, int y, Axis axis, const ShearChoice& shear, float foot
 }
 
 // The change of position with one pixel: the pixel's size along the axis, and the ray's run over the change of depth.
-Tangent Surface::tangent(int x, int y, Axis axis) const {
+Tangent Surface::tangent(int x, int y, Axis axis) const { return tangent(x, y, axis, depth_slope(x, y, axis)); }
+
+Tangent Surface::tangent(int x, int y, Axis axis, Bounded slope) const {
   const SurfacePixel& pixel = at(x, y);
   Tangent change;
-  change[2] = depth_slope(x, y, axis);
+  change[2] = slope;
   for (const Axis i : {horizontal, vertical}) {
     const Bounded ray = view_.is_perspective() ? pixel.position_mm[i] / pixel.position_mm[2] : exact(0);
     change[i] = ray * change[2];
     if (i == axis) change[i] = change[i] + view_.size_mm(i, pixel.position_mm[2]);
   }
   return change;
+}
+
+Bounded patch_area(const Tangent& x, const Tangent& y) {
+  Bounded sum;
+  for (int i = 0; i < 3; ++i) {
+    const int j = (i + 1) % 3;
+    const int k = (i + 2) % 3;
+    const Bounded part = x[j] * y[k] - x[k] * y[j];
+    sum = sum + part * part;
+  }
+  return square_root(rounded(sum));
 }
 
 ShearChoice Surface::shear(int x, int y) const {

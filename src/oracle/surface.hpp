@@ -39,6 +39,9 @@ struct Bend {
   Bounded skew;
 };
 
+/// Of the patch of a pixel, whose sides they are, mm^2.
+Bounded patch_area(const Tangent& x, const Tangent& y);
+
 class Surface {
  public:
   /// `sheared`: the vertical pass runs along the shear of each pixel, not along y.
@@ -61,6 +64,9 @@ class Surface {
   /// Change of depth per pixel along an axis, mm: the smaller one of the differences to both neighbours of the same
   /// material, 0 if they differ in sign.
   Bounded depth_slope(int x, int y, Axis axis) const;
+
+  /// Change of position with one pixel along an axis where depth changes so much, mm.
+  Tangent tangent(int x, int y, Axis axis, Bounded slope) const;
 
   /// The shear of a pixel.
   ShearChoice shear(int x, int y) const;

@@ -49,6 +49,9 @@ TEST_CASE("plans that cannot be", "[bad]") {
   check_error(plan({.taps = {.count = 4}}), ErrorCode::usage, "taps: got 4, want an odd number, 3..2047");
   check_error(plan({.jitter = 1.5}), ErrorCode::usage, "jitter: got 1.500000, want 0..1");
   check_error(plan({.jitter = NAN}), ErrorCode::usage, "jitter: got nan, want 0..1");
+  check_error(plan({.disc = {.samples = 1025}}), ErrorCode::usage, "disc samples: got 1025, want 0..1024");
+  check_error(plan({.disc = {.samples = -1}}), ErrorCode::usage, "disc samples: got -1, want 0..1024");
+  check_error(plan({.disc = {.accumulate = 0}}), ErrorCode::usage, "disc accumulate: got 0, want 1..65536");
   check_error(plan({.albedo_mix = -0.5}), ErrorCode::usage, "albedo_mix: got -0.500000, want 0..1");
   check_error(plan({.tile_width = 20}), ErrorCode::usage, "tile_width: got 20, want a multiple of 16 up to 65536");
   check_error(plan({.tile_height = -1}), ErrorCode::usage, "tile_height: got -1, want 0..65536");

@@ -1,5 +1,6 @@
 // The inverse cdf of Burley's profile in float32, on the device.
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "catch.hpp"
@@ -37,17 +38,22 @@ std::vector<float> radii_on_device(const std::vector<float>& shares) {
 
 }  // namespace
 
-TEST_CASE("Burley's inverse cdf is good to 5e-7 in float32", "[kernels][profile]") {
-  // Shares from 1e-7 to 1 - 6e-8, dense in log u and in log (1 - u). Two roundings of the argument of log1p or log,
+TEST_CASE("Burley's inverse cdf is good to 5e-7 in float32 for all shares", "[kernels][profile]") {
+  // All there are, dense in log u, in log (1 - u) and about where the form changes: from the smallest normal number, as
+  // a device may flush what is below, to the last one before 1. Two roundings of the argument of log1p or log,
   // each 6e-8 of a value whose logarithm is 0.5 or more of its size, and two to four of the functions themselves make
   // 5e-7.
   Random random(120);
-  std::vector<float> shares = {1e-7F, 0.5F, std::nextafter(0.5F, 0.0F), 1 - 6e-8F};
-  for (int i = 0; i < 400000; ++i) {
+  constexpr float least = std::numeric_limits<float>::min();
+  const float most = std::nextafter(1.0F, 0.0F);
+  std::vector<float> shares = {least, 1e-7F, 0.5F, std::nextafter(0.5F, 0.0F), most};
+  for (int i = 0; i < 300000; ++i) {
+    shares.push_back(static_cast<float>(std::exp(random.uniform(std::log(static_cast<double>(least)), 0))));
     shares.push_back(static_cast<float>(std::exp(random.uniform(std::log(1e-7), 0))));
-    shares.push_back(1 - static_cast<float>(std::exp(random.uniform(std::log(6e-8), 0))));
+    shares.push_back(1 - static_cast<float>(std::exp(random.uniform(std::log(5.9e-8), 0))));
+    shares.push_back(static_cast<float>(random.uniform(0.499, 0.501)));
   }
-  std::erase_if(shares, [](float u) { return u < 1e-7F || u > 1 - 6e-8F; });
+  std::erase_if(shares, [&](float u) { return u < least || u > most; });
   const std::vector<float> radii = radii_on_device(shares);
   const dermis::Profile profile = dermis::Profile::burley({1, 1, 1});
   double worst = 0;
@@ -61,6 +67,7 @@ TEST_CASE("Burley's inverse cdf is good to 5e-7 in float32", "[kernels][profile]
     }
   }
   CAPTURE(test_seed(), worst, worst_share);
-  CHECK(shares.size() > 700000);
+  CHECK(shares.size() > 1100000);
   CHECK(worst <= 5e-7);
+  CHECK(radii_on_device({0.0F}).front() == 0);
 }

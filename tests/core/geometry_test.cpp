@@ -212,3 +212,21 @@ TEST_CASE("planes and bowls that are tilted both ways equal the oracle within fl
     }
   }
 }
+
+// Measured, tilted: 0.0043 in the tangent plane, 0.0051 in that of the screen, of 21 samples 0.0094 and 0.0117. Discs
+// that do not weigh how much surface lies under a sample are off by 0.020 and 0.031 (55 samples).
+TEST_CASE("discs in the tangent plane beat those in that of the screen", "[geometry][disc]") {
+  for (const auto& [samples, bound] : {std::pair{21, 0.015}, std::pair{55, 0.007}}) {
+    const auto of = [&, count = samples](bool tangent_plane) {
+      return errors(two_spheres(),
+                    {.method = Method::disc, .disc = {.samples = count, .tangent_plane = tangent_plane}});
+    };
+    const Errors tangent = of(true);
+    const Errors screen = of(false);
+    CAPTURE(samples, tangent.tilted, screen.tilted, tangent.foreground, screen.foreground, tangent.worst);
+    CHECK(tangent.tilted <= bound);
+    CHECK(1.1 * tangent.tilted <= screen.tilted);
+    CHECK(tangent.foreground <= screen.foreground);
+    CHECK(tangent.worst <= 0.3);
+  }
+}

@@ -10,6 +10,7 @@ using dermis::Device;
 using dermis::Format;
 using dermis::Frame;
 using dermis::FrameDescription;
+using dermis::Method;
 using dermis::Options;
 using dermis::Plan;
 
@@ -62,10 +63,13 @@ void copy_values(const GuardedImage& from, GuardedImage& to) {
 }  // namespace
 
 TEST_CASE("the result does not depend on how it is computed", "[invariance]") {
-  const double jitter = GENERATE(0.0, 0.4);
+  const auto [jitter, method] =
+      GENERATE(table<double, Method>({{0.0, Method::separable}, {0.4, Method::separable}, {0.0, Method::disc}}));
   const Device device = Device::open();
   RandomFrame frame = full_frame(600, true, jitter);
-  CAPTURE(test_seed(), jitter);
+  frame.options.method = method;
+  frame.options.disc = {.prefiltered = true, .accumulate = 2};
+  CAPTURE(test_seed(), jitter, static_cast<int>(method));
   const Outputs expected = run(device, frame, frame.options);
   CHECK(expected.result != bits_of(*frame.beauty));
 

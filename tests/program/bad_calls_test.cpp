@@ -92,7 +92,12 @@ TEST_CASE("values outside their ranges are usage errors that name argument, valu
                                    {"--tolerance", "1", "between 0 and 1"},
                                    {"--tolerance", "-0.1", "between 0 and 1"},
                                    {"--tolerance", "nan", "between 0 and 1"},
-                                   {"--method", "fast", "separable or exact"},
+                                   {"--method", "fast", "separable or exact or disc"},
+                                   {"--samples", "0", "1 to 1024 or auto"},
+                                   {"--samples", "1025", "1 to 1024 or auto"},
+                                   {"--samples", "some", "1 to 1024 or auto"},
+                                   {"--disc", "flat", "tangent or screen"},
+                                   {"--accumulate", "0", "1 to 65536"},
                                    {"--lighting", "dark", "raw or lit"},
                                    {"--albedo-mix", "-0.1", "0 to 1"},
                                    {"--fov", "nan", "below 180"},
@@ -126,6 +131,32 @@ TEST_CASE("a design that the model does not know is a usage error that names the
       {{"--model", "svd", "--guide", "1"}, {"--guide: got 1 for --model svd", "--model guided"}},
       {{"--model", "optimised", "--rank", "1", "--non-negative"}, {"--non-negative: got", "--rank 1", "--rank 2 or 3"}},
       {{"--model", "svd", "--rank", "2", "--non-negative"}, {"--non-negative: got --model svd", "--model optimised"}}};
+  for (const Case& c : cases) {
+    INFO(c.parts.front());
+    call.check_refuses(c.words, 2, c.parts);
+  }
+}
+
+TEST_CASE("options of another method are a usage error that names both") {
+  const GoodCall call;
+  struct Case {
+    Words words;
+    Words parts;
+  };
+  const std::vector<Case> cases = {
+      {{"--samples", "9"}, {"--samples: got 9 with --method separable", "--method disc"}},
+      {{"--disc", "screen", "--method", "exact"}, {"--disc: got screen with --method exact", "--method disc"}},
+      {{"--prefilter"}, {"--prefilter: got it with --method separable", "--method disc"}},
+      {{"--accumulate", "2", "--quality", "reference"}, {"--accumulate: got 2 with --method exact", "--method disc"}},
+      {{"--method", "disc", "--taps", "9"}, {"--taps: got 9 with --method disc", "--method separable"}},
+      {{"--method", "disc", "--rank", "2"}, {"--rank: got 2 with --method disc", "--method separable"}},
+      {{"--method", "disc", "--non-negative"}, {"--non-negative: got it with --method disc", "--method separable"}},
+      {{"--method", "disc", "--quality", "draft"}, {"--quality: got draft with --method disc", "--samples"}},
+      {{"--method", "disc", "--quality", "reference"}, {"--quality: got reference with --method disc", "--samples"}},
+      {{"--method", "disc", "--tolerance", "0.1"}, {"--tolerance: got 0.1 with --method disc", "--samples"}},
+      {{"--method", "disc", "--jitter", "0.5"}, {"--jitter: got 0.5 with --method disc", "--method separable"}},
+      {{"--method", "disc", "--shear", "on"}, {"--shear: got on with --method disc", "--method separable"}},
+      {{"--method", "disc", "--tile-map", call.folder() / "t.png"}, {"--tile-map: got", "with --method disc"}}};
   for (const Case& c : cases) {
     INFO(c.parts.front());
     call.check_refuses(c.words, 2, c.parts);

@@ -270,6 +270,34 @@ TEST_CASE("the exact method and the separable one agree roughly, and more taps a
   CHECK_FALSE(is_identical(folder / "separable.exr", folder / "few.exr"));
 }
 
+TEST_CASE("discs come near the exact method, report what they did, and depend on the seed") {
+  const TemporaryFolder folder;
+  const MadeScene scene = make_scene(folder / "in.exr", "sphere", 61, 53, 4);
+  const auto run = [&](const std::string& name, const Words& more) {
+    Words words = {"--material", "1=burley:1/0.7/0.5"};
+    words.insert(words.end(), more.begin(), more.end());
+    return run_well(filter_arguments(scene, folder / name, words));
+  };
+  run("exact.exr", {"--method", "exact"});
+  const std::string text = run("disc.exr", {"--method", "disc", "--samples", "200", "--prefilter", "--stats"});
+  CHECK(relative_l2(folder / "disc.exr", folder / "exact.exr", "ViewLayer.sss") <= 0.01);
+  CHECK(text.find("disc, 200 samples, tangent plane, prefiltered, accumulate 1, seed 0\n") != std::string::npos);
+  const auto stats = nlohmann::json::parse(
+      run("auto.exr", {"--method", "disc", "--disc", "screen", "--accumulate", "2", "--stats-json", "-"}));
+  CHECK(stats["method"] == "disc");
+  CHECK(stats["disc"] ==
+        nlohmann::json::parse(R"({"samples": "auto", "plane": "screen", "prefiltered": false, "accumulate": 2})"));
+  CHECK(stats["pixels"]["scattered"] > 500);
+  CHECK(stats["pixels"]["unlit"] == 0);
+  CHECK(stats["materials"][0]["design"].is_null());
+  run("other.exr", {"--method", "disc", "--disc", "screen", "--accumulate", "2", "--seed", "9"});
+  CHECK_FALSE(is_identical(folder / "other.exr", folder / "auto.exr"));
+  CHECK(relative_l2(folder / "other.exr", folder / "auto.exr", "ViewLayer.sss") <= 0.05);
+  // Both ways of texturing: the albedo after the discs, and half of it before.
+  run("half.exr", {"--method", "disc", "--disc", "screen", "--accumulate", "2", "--albedo-mix", "0.5"});
+  CHECK_FALSE(is_identical(folder / "half.exr", folder / "auto.exr"));
+}
+
 TEST_CASE("light with the albedo in it gives the same picture as light without") {
   const TemporaryFolder folder;
   MadeScene scene = make_scene(folder / "in.exr", "touching", 50, 41, 4);

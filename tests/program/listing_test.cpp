@@ -39,14 +39,15 @@ TEST_CASE("help and version are no errors") {
   for (const char* command : {"filter", "info", "devices", "profiles", "compare", "scene", "Exit codes"})
     CHECK(has(help, command));
   const std::string filter = run_well({"filter", "--help"});
-  for (const char* option : {"--model",       "--rank",         "--taps",      "--placement",
-                             "--guide",       "--non-negative", "--tolerance", "--material",
-                             "--profile",     "--method",       "--jitter",    "--seed",
-                             "--lighting",    "--albedo-mix",   "--fov",       "--focal-px",
-                             "--px-per-unit", "--mm-per-unit",  "--role",      "--layer",
-                             "--compression", "--device",       "--threads",   "--stats",
-                             "--stats-json",  "--preview",      "--output",    "gaussians:FILE.json",
-                             "--quality",     "--tile-map",     "--bad-pixels"}) {
+  for (const char* option : {"--model",       "--rank",         "--taps",       "--placement",
+                             "--guide",       "--non-negative", "--tolerance",  "--material",
+                             "--profile",     "--method",       "--jitter",     "--seed",
+                             "--lighting",    "--albedo-mix",   "--fov",        "--focal-px",
+                             "--px-per-unit", "--mm-per-unit",  "--role",       "--layer",
+                             "--compression", "--device",       "--threads",    "--stats",
+                             "--stats-json",  "--preview",      "--output",     "gaussians:FILE.json",
+                             "--quality",     "--tile-map",     "--bad-pixels", "--samples",
+                             "--disc",        "--prefilter",    "--accumulate"}) {
     INFO(option);
     CHECK(has(filter, option));
   }

@@ -11,8 +11,8 @@
 
 namespace dermis::oracle {
 
-/// A material as the oracle needs it. `radial` and `cdf` are used by surface_integral only; of `taps` it uses only the
-/// radii, to tell which kernels are narrower than half a pixel.
+/// A material as the oracle needs it. `radial` and `cdf` are used by surface_integral and disc only; of `taps` they use
+/// only the radii, to tell which kernels are narrower than half a pixel.
 struct Material {
   int id = 0;
   bool width_follows_albedo = false;
@@ -49,5 +49,15 @@ Reference separable(const Frame& frame, std::span<const Material> materials, con
 /// is not derived here, but set by the tables of R that it reads.
 Reference surface_integral(const Frame& frame, std::span<const Material> materials, const Options& options,
                            int finer = 1);
+
+/// The same integral by samples on discs; see DiscOptions. Of n samples sample i has the distance r at which the share
+/// s/16 + (1 - s/16) (i + 1/2) / n of the widest channel's light has left, the direction i times the golden angle, and
+/// stands for the area a = (1 - s/16) / (n R(r)). s is the largest number below 16 for which the first sample, and half
+/// the root of its area, lie beyond the disc that fits into the pixel. Sample i weighs R(distance) a A / D, A and D
+/// being the areas of surface and of disc under a pixel there, and the pixel itself as in surface_integral; its shares
+/// of samples are left out. The bounds hold for a device that reads R and its cdf from tables that are linear in r^2
+/// between 256 nodes or more in each octave, and neglects R from the distance on within which all but 1e-6 leaves.
+/// Where float32 cannot tell which pixels a sample reads, they admit every outcome.
+Reference disc(const Frame& frame, std::span<const Material> materials, const Options& options);
 
 }  // namespace dermis::oracle

@@ -1,0 +1,31 @@
+/// How discs are sampled, on the command line.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <optional>
+#include <string>
+
+#include "dermis/plan.hpp"
+
+namespace dermis::program {
+
+/// What was not given is as in DiscOptions.
+struct DiscArguments {
+  std::optional<std::string> samples;  ///< a number or "auto"
+  std::optional<std::string> plane;    ///< "tangent" or "screen"
+  std::optional<int> accumulate;
+  bool prefilter = false;
+};
+
+/// Adds --samples, --disc, --prefilter and --accumulate.
+void add_disc_arguments(CLI::App& app, DiscArguments& arguments);
+
+/// The first of these options that was given, with its value; empty if none was.
+std::string first_given(const DiscArguments& arguments);
+
+DiscOptions disc_options_of(const DiscArguments& arguments);
+
+/// The options that ask for it, with a space before each.
+std::string command_text(const DiscOptions& disc);
+
+}  // namespace dermis::program

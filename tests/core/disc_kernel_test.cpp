@@ -1,0 +1,113 @@
+// The kernels of the disc method against the oracle on random frames, within the bound that it derives from float
+// rounding.
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "catch.hpp"
+#include "core/oracle_material.hpp"
+#include "core/random_frame.hpp"
+#include "dermis/plan.hpp"
+
+using dermis::Device;
+using dermis::Frame;
+using dermis::FrameDescription;
+using dermis::Plan;
+namespace oracle = dermis::oracle;
+
+namespace {
+
+struct Tally {
+  double worst = 0;  ///< error / bound
+  long values = 0;
+  long loose = 0;    ///< of which the bound is more than a hundredth of the largest one of the frame
+  long changed = 0;  ///< that differ from the light
+};
+
+void compare(const GuardedImage& output, const oracle::Picture& expected, const oracle::Picture& bound, Tally& tally) {
+  double largest = 0;
+  for (const double value : expected.values) largest = std::max(largest, std::abs(value));
+  for (int y = 0; y < expected.height; ++y) {
+    for (int x = 0; x < expected.width; ++x) {
+      for (int c = 0; c < 3; ++c) {
+        const double value = expected(x, y, c);
+        const bool half = output.layout().format == dermis::Format::f16;
+        const double allowed = bound(x, y, c) + (half ? half_rounding(value) : 0);
+        const double error = std::abs(output.get(x, y, c) - value);
+        ++tally.values;
+        if (bound(x, y, c) > 0.01 * largest) ++tally.loose;
+        if (!half && error > 0) tally.worst = std::max(tally.worst, error / allowed);
+        if (!(error <= allowed)) {
+          CAPTURE(x, y, c, value, output.get(x, y, c), error, allowed);
+          REQUIRE(error <= allowed);
+        }
+      }
+    }
+  }
+}
+
+/// A frame whose options ask for some kind of disc.
+void choose_discs(Random& random, RandomFrame& frame) {
+  frame.options.method = dermis::Method::disc;
+  frame.options.disc = {.samples = random.coin() ? 0 : random.integer(1, 40),
+                        .tangent_plane = random.coin(),
+                        .prefiltered = random.coin(),
+                        .accumulate = random.coin() ? 1 : 2};
+  for (dermis::Material& material : frame.materials) material.taps.reset();
+}
+
+/// Normals of any length, some of which are none or face away.
+GuardedImage random_normals(Random& random, int width, int height) {
+  GuardedImage normals(width, height, 3, random.coin() ? dermis::Format::f32 : dermis::Format::f16, &random);
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      for (int c = 0; c < 2; ++c) normals.set(x, y, c, random.uniform(-1, 1));
+      normals.set(x, y, 2, random.integer(0, 20) == 0 ? NAN : random.uniform(-2, 0.3));
+    }
+  }
+  return normals;
+}
+
+}  // namespace
+
+TEST_CASE("discs equal the oracle within float rounding", "[disc][kernels]") {
+  const Device device = Device::open();
+  constexpr int sizes[][2] = {{1, 1}, {7, 5}, {61, 40}, {33, 28}, {70, 3}};
+  Tally tally;
+  for (unsigned round = 0; round < 8; ++round) {
+    Random random(8000 + round);
+    const auto& [width, height] = sizes[round % 5];
+    RandomFrame random_frame(random, {.width = width, .height = height, .materials = 2, .jitter = 0.0});
+    choose_discs(random, random_frame);
+    Frame frame = random_frame.frame();
+    const GuardedImage normals = random_normals(random, width, height);
+    if (random.coin()) frame.normal = normals.image();
+    const dermis::DiscOptions& disc = random_frame.options.disc;
+    CAPTURE(test_seed(), round, width, height, disc.samples, disc.tangent_plane, disc.prefiltered, disc.accumulate);
+    const auto materials =
+        oracle_materials(random_frame.materials, {.model = dermis::Model::pre_integrated, .count = 3});
+    const oracle::Reference expected = oracle::disc(frame, materials, random_frame.options);
+
+    Plan(device, random_frame.materials, FrameDescription::of(frame), random_frame.options).run(frame);
+
+    compare(*random_frame.scattered, expected.scattered, expected.scattered_bound, tally);
+    CHECK(random_frame.scattered->guards_intact());
+    if (random_frame.result) {
+      compare(*random_frame.result, expected.result, expected.result_bound, tally);
+      CHECK(random_frame.result->guards_intact());
+    }
+    for (int y = 0; y < height; ++y) {
+      for (int x = 0; x < width; ++x) {
+        if (expected.touched(x, y) == 0) continue;
+        for (int c = 0; c < 3; ++c) {
+          if (std::abs(expected.scattered(x, y, c) - random_frame.light->get(x, y, c)) > 1e-3) ++tally.changed;
+        }
+      }
+    }
+  }
+  INFO("worst error / bound " << tally.worst << ", " << tally.loose << " of " << tally.values << " bounds are loose");
+  CHECK(tally.changed > 1000);  // the filter did something
+  CHECK(tally.worst > 1e-3);    // the bound is of the order of the errors
+  // And it says something, but where float32 cannot tell which pixels a sample reads.
+  CHECK(tally.loose < tally.values / 50);
+}
