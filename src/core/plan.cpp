@@ -280,7 +280,7 @@ Stats Plan::run(const Frame& frame, Reuse::State* reuse, const Progress& progres
 Event Plan::enqueue(const Frame& frame, cl_command_queue queue, std::span<const cl_event> wait_for) const {
   if (queue == nullptr) throw Error(ErrorCode::usage, "queue", "nullptr", "an OpenCL command queue");
   const auto images = check_frame(frame, state_->description, state_->options);
-  for (const FrameImage& image : images) {
+  for (const CallerImage& image : images) {
     if (image.host != nullptr) throw Error(ErrorCode::usage, image.name, "host memory", "a buffer, to enqueue");
   }
   if (state_->options.bad_pixels == BadPixels::error) {
