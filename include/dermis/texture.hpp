@@ -66,12 +66,14 @@ struct TextureOptions {
 /// difference of variances (d'Eon, GDC 2007; GPU Gems 3, section 14.4.3). At a texel of stretch s
 ///
 ///     blur_k(i) = sum_o w_o blur_(k-1)(i + o n) / sum_o w_o,    w_o = exp(-(o n s)^2 / (2 d)),   |o| <= taps
-///     d = variance_k - variance_(k-1), of the first variance_1 + s^2 / 12, and at least (s / 2^14)^2 on this side of
-///     n = the largest whole number with n s <= spacing sqrt(d), at least 1; of the first 1
-///     taps = the smallest one with taps n s >= reach sqrt(d), at least 1
+///     d = variance_k - variance_(k-1);  of the first blur variance_1 + s^2 / 12, a texel being so wide itself
+///     n = the largest whole number with n s <= spacing sqrt(d), at least 1;  of the first blur 1
+///     taps = the smallest whole number with taps n s >= reach sqrt(d), at least 1;  of the first blur in place of
+///            sqrt(d) sqrt(variance_1) + 0.3 s, which is no less
 ///
 /// along u, then along v, i + o n mirrored at the ends of the run; blur_0 is the light itself, and the result the sum
-/// over k of weight_k blur_k. s^2 / 12 is the variance of a texel. A blur before has taken away what n skips.
+/// over k of weight_k blur_k. What n skips the blur before has smoothed. A deviation sqrt(d) of more than 2^14 texels
+/// counts as one of 2^14. The products in n and taps are those of float32.
 struct GaussianChain {
   std::array<std::vector<double>, 3> variances_mm2;
   std::array<std::vector<double>, 3> weights;  ///< >= 0; of each channel they sum to 1
@@ -97,8 +99,8 @@ struct PolePair {
 /// integral of f is 1 and that of h is 0. Over light that is constant on each texel, at the middles of texels, along
 /// the surface from texel to texel, mirrored at the ends of the run, such sums are exact by recursion, whatever the
 /// stretches: from one border of a texel to the next, z = exp(-gamma s), the state of a pole becomes z state + (1 - z)
-/// light; its result is the mean of what its states from both sides become half a texel on (Deriche 1993 in parallel
-/// form).
+/// light; its result is the mean of what its states from both sides become half a texel on (Deriche 1993, in parallel
+/// form). An exponential counts as at most 2^14 texels long.
 struct Recursion {
   static constexpr int pairs = 2;
   using Function = std::array<PolePair, pairs>;

@@ -30,7 +30,7 @@ void check_camera(const Frame& frame) {
 }  // namespace
 
 std::array<CallerImage, image_count> check_frame(const Frame& frame, const FrameDescription& description,
-                                                const Options& options) {
+                                                 const Options& options) {
   check_size(frame.width, frame.height, "frame size");
   const std::array<CallerImage, image_count> images = {
       described("light", 3, frame.light, frame.width),         described("albedo", 3, frame.albedo, frame.width),

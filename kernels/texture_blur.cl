@@ -1,0 +1,210 @@
+// texture_runs_u, texture_runs_v, texture_blur: the chain of Gaussians of texture.hpp. A work-item of the first has a
+// row, of the second V columns, of the last a block.
+#pragma OPENCL FP_CONTRACT OFF
+#include "texture.h"
+
+// Texels of the run before and after each one, -1 before an empty one.
+kernel void texture_runs_u(struct TextureParams t, global const uchar* objects, global int* before,
+                           global int* after) {
+  const size_t row = texel_at(&t, 0, get_global_id(0));
+  const int x_end = (t.width + V - 1) / V * V;  // lanes beyond the edge are empty
+  int count = -1;
+  for (int x = 0; x < x_end; ++x) {
+    count = objects[row + x] ? count + 1 : -1;
+    before[row + x] = count;
+  }
+  count = -1;
+  for (int x = x_end - 1; x >= 0; --x) {
+    count = objects[row + x] ? count + 1 : -1;
+    after[row + x] = count;
+  }
+}
+
+static inline vint count_on(vint count, global const uchar* objects) {
+  return select((vint)(-1), count + 1, AS_MASK(load_bytes(objects) != 0));
+}
+
+static inline void store_ints(global int* p, vint value) { *(global vint*)p = value; }
+
+kernel void texture_runs_v(struct TextureParams t, global const uchar* objects, global int* before,
+                           global int* after) {
+  const int x = get_global_id(0) * V;
+  vint count = (vint)(-1);
+  for (int y = 0; y < t.height; ++y) {
+    const size_t at = texel_at(&t, x, y);
+    count = count_on(count, objects + at);
+    store_ints(before + at, count);
+  }
+  count = (vint)(-1);
+  for (int y = t.height - 1; y >= 0; --y) {
+    const size_t at = texel_at(&t, x, y);
+    count = count_on(count, objects + at);
+    store_ints(after + at, count);
+  }
+}
+
+static inline vint load_ints(global const int* p) { return *(global const vint*)p; }
+
+// Where V texels are in their runs.
+typedef struct {
+  vint before;  // 0 in empty lanes
+  vint length;  // 1 there
+  int room;     // texels that all lanes have on both sides; -1 if a lane is empty
+  vint object;
+} Runs;
+
+static inline Runs runs_at(global const int* before, global const int* after, size_t at) {
+  Runs runs;
+  const vint ahead = load_ints(before + at);
+  const vint behind = load_ints(after + at);
+  runs.object = AS_MASK(ahead >= 0);
+  runs.room = lowest_lane(min(ahead, behind));
+  runs.before = max(ahead, (vint)(0));
+  runs.length = max(ahead + behind + 1, (vint)(1));
+  return runs;
+}
+
+// How many texels from each lane its tap is, mirrored at the ends of the run.
+static inline vint mirrored(const Runs* runs, vint offset) {
+  const vint period = 2 * runs->length;
+  vint place = (runs->before + offset) % period;
+  place += select((vint)(0), period, AS_MASK(place < 0));
+  return min(place, period - 1 - place) - runs->before;
+}
+
+SHARED vfloat gather(global const float* p, int along, vint shift) {
+  vfloat value;
+#define READ_LANE(lane) LANE(value, lane) = p[(0x##lane) + (long)LANE(shift, lane) * along];
+  EACH_LANE(READ_LANE)
+#undef READ_LANE
+  return value;
+}
+
+// The sum of the taps at + and - offset; `same`: all lanes have the first one's offset, and room for it.
+static inline vfloat both_taps(global const float* p, int along, const Runs* runs, vint offset, int same) {
+  if (same) {
+    const long bytes_apart = (long)LANE(offset, 0) * along;
+    return load_floats(p - bytes_apart) + load_floats(p + bytes_apart);
+  }
+  return gather(p, along, mirrored(runs, -offset)) + gather(p, along, mirrored(runs, offset));
+}
+
+#if HAS_STRETCH
+
+// The largest n with n mm <= most, at least 1, and the smallest with n mm >= least, at least 1. Products are rounded
+// alike everywhere, and quotients are not.
+static inline vint steps_within(vfloat mm, vfloat most) {
+  vfloat n = floor(most / mm);
+  n += select((vfloat)(0.0f), (vfloat)(1.0f), AS_MASK((n + 1.0f) * mm <= most));
+  n -= select((vfloat)(0.0f), (vfloat)(1.0f), AS_MASK(n * mm > most));
+  return whole(fmax(n, (vfloat)(1.0f)));
+}
+
+static inline vint steps_beyond(vfloat mm, vfloat least) {
+  vfloat n = ceil(least / mm);
+  n -= select((vfloat)(0.0f), (vfloat)(1.0f), AS_MASK((n - 1.0f) * mm >= least));
+  n += select((vfloat)(0.0f), (vfloat)(1.0f), AS_MASK(n * mm < least));
+  return whole(fmax(n, (vfloat)(1.0f)));
+}
+
+static vfloat blurred(const struct BlurParams* blur, global const float* weights, global const float* p, int along,
+                      const Runs* runs, vfloat stretch) {
+  const vfloat variance = blur->variance_mm2 + stretch * stretch * blur->own_variance;
+  const vfloat deviation = blur->deviation_mm + stretch * blur->own_deviation;
+  const vfloat mm = fmax(stretch, deviation * 0x1p-14f);
+  const vint step = blur->own_variance > 0.0f ? (vint)(1) : steps_within(mm, SPACING * deviation);
+  const vfloat step_mm = as_floats(step) * mm;
+  const vint taps = steps_beyond(step_mm, REACH * deviation);
+  const vfloat exponent = -0.5f * (step_mm * step_mm) / variance;
+  const int most = highest_lane(taps);
+  const int same = !any_bit(AS_MASK(step != (vint)(LANE(step, 0)))) && runs->room >= most * LANE(step, 0);
+  vfloat sum = load_floats(p);
+  vfloat norm = (vfloat)(1.0f);
+  for (int o = 1; o <= most; ++o) {
+    const vfloat weight = keep(AS_MASK(taps >= (vint)(o)), exp(exponent * ((float)o * (float)o)));
+    sum = fma(weight, both_taps(p, along, runs, step * o, same), sum);
+    norm = fma(weight, (vfloat)(2.0f), norm);
+  }
+  return sum / norm;
+}
+
+#else
+
+static vfloat blurred(const struct BlurParams* blur, global const float* weights, global const float* p, int along,
+                      const Runs* runs, vfloat stretch) {
+  global const float* weight = weights + blur->first_weight;
+  const int same = runs->room >= blur->taps * blur->step;
+  vfloat sum = weight[0] * load_floats(p);
+  for (int o = 1; o <= blur->taps; ++o) {
+    sum = fma((vfloat)(weight[o]), both_taps(p, along, runs, (vint)(o * blur->step), same), sum);
+  }
+  return sum;
+}
+
+#endif
+
+// Whether a block within reach along the axis has light. The reach is that of the widest channel, and a bit.
+static int is_lit(const struct TextureParams* t, const struct BlurParams* blurs, global const uchar* lit, float finest,
+                  int down) {
+  float widest_texels = 0.0f;
+  for (int c = 0; c < 3; ++c) {
+    const float mm = fmax(finest, blurs[c].deviation_mm * 0x1p-14f);
+    widest_texels = fmax(widest_texels, blurs[c].deviation_mm / mm + blurs[c].own_deviation);
+  }
+  const int reach = (int)((REACH + 1.0f) * widest_texels) + 2;
+  const int block = get_global_id(down);
+  const int size = down ? BLOCK_HEIGHT : BLOCK_WIDTH;
+  const int blocks = down ? t->blocks_y : t->blocks_x;
+  const int first = max(0, block - (reach + size - 1) / size);
+  const int last = min(blocks - 1, block + (reach + size - 1) / size);
+  for (int b = first; b <= last; ++b) {
+    const int at = down ? b * t->blocks_x + get_global_id(0) : get_global_id(1) * t->blocks_x + b;
+    if (lit[at] == 2) return 1;
+  }
+  return 0;
+}
+
+// One pass of one level, along u, or along v if `down`. `sum`: the levels so far, to add this one to, if it is the
+// vertical pass; `first`: there are none.
+kernel void texture_blur(struct TextureParams t, global const struct BlurParams* level, global const float* weights,
+                         int down, global const uchar* stretch, struct ImageParams stretch_at,
+                         global const int* before, global const int* after, global const float* finest,
+                         global const uchar* source_lit, global const float* source, global uchar* target_lit,
+                         global float* target, global float* sum, int first, global int* counters) {
+  const int block = get_global_id(1) * t.blocks_x + get_global_id(0);
+  const size_t plane = plane_of(&t);
+  const int x_begin = get_global_id(0) * BLOCK_WIDTH;
+  const int x_end = min(x_begin + BLOCK_WIDTH, t.width);
+  const int y_begin = get_global_id(1) * BLOCK_HEIGHT;
+  const int y_end = min(y_begin + BLOCK_HEIGHT, t.height);
+  if (source_lit[block] == 0) {
+    target_lit[block] = 0;
+    atomic_inc(counters + COUNTER_EMPTY_PARTS);
+    return;
+  }
+  struct BlurParams blurs[3];
+  for (int c = 0; c < 3; ++c) blurs[c] = level[c];
+  const int lit = is_lit(&t, blurs, source_lit, finest[block], down);
+  target_lit[block] = lit ? 2 : 1;
+  if (!lit) atomic_inc(counters + COUNTER_UNLIT_PARTS);
+  const int along = down ? t.stride : 1;
+  for (int y = y_begin; y < y_end; ++y) {
+    for (int x = x_begin; x < x_end; x += V) {
+      const size_t at = texel_at(&t, x, y);
+      const Runs runs = runs_at(before, after, at);
+      vfloat its_stretch = (vfloat)(1.0f);
+#if HAS_STRETCH
+      its_stretch = select(its_stretch, read_values(row_of(stretch, &stretch_at, t.width, y, 0), x), runs.object);
+#endif
+      for (int c = 0; c < 3; ++c) {
+        const size_t its = c * plane + at;
+        vfloat value = (vfloat)(0.0f);
+        if (lit && any_bit(runs.object)) {
+          value = keep(runs.object, blurred(&blurs[c], weights, source + its, along, &runs, its_stretch));
+        }
+        store_floats(target + its, value);
+        if (down) store_floats(sum + its, blurs[c].weight * value + (first ? (vfloat)(0.0f) : load_floats(sum + its)));
+      }
+    }
+  }
+}

@@ -1,0 +1,111 @@
+#include "core/texture_tables.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+namespace dermis {
+
+namespace {
+
+constexpr float longest_texels = 0x1p14F;
+
+/// As in texture_blur.cl.
+int steps_within(float mm, float most) {
+  float n = std::floor(most / mm);
+  if ((n + 1) * mm <= most) ++n;
+  if (n * mm > most) --n;
+  return std::max(static_cast<int>(n), 1);
+}
+
+int steps_beyond(float mm, float least) {
+  float n = std::ceil(least / mm);
+  if ((n - 1) * mm >= least) --n;
+  if (n * mm < least) ++n;
+  return std::max(static_cast<int>(n), 1);
+}
+
+void place_taps(params::BlurParams& blur, std::vector<float>& weights, float mm_per_texel) {
+  const float deviation_mm = blur.deviation_mm + mm_per_texel * blur.own_deviation;
+  const float mm = std::max(mm_per_texel, deviation_mm / longest_texels);
+  blur.step = blur.own_variance > 0 ? 1 : steps_within(mm, GaussianChain::spacing * deviation_mm);
+  const float step_mm = static_cast<float>(blur.step) * mm;
+  blur.taps = steps_beyond(step_mm, GaussianChain::reach * deviation_mm);
+  blur.first_weight = static_cast<int>(weights.size());
+  const double own = static_cast<double>(mm_per_texel) * mm_per_texel * static_cast<double>(blur.own_variance);
+  const double variance = static_cast<double>(blur.variance_mm2) + own;
+  std::vector<double> shares;
+  double sum = 0;
+  for (int o = 0; o <= blur.taps; ++o) {
+    const double distance_mm = static_cast<double>(o) * static_cast<double>(step_mm);
+    shares.push_back(o == 0 ? 1 : std::exp(-distance_mm * distance_mm / (2 * variance)));
+    sum += (o == 0 ? 1 : 2) * shares.back();
+  }
+  for (const double share : shares) weights.push_back(static_cast<float>(share / sum));
+}
+
+/// Over so much of a texel.
+void set_decay(float (&decay)[3][STATES], int lane, const PolePair& pair, double mm_per_texel, double part) {
+  const auto length = [&](double rate) {
+    return part * std::max(mm_per_texel, 1 / (rate * static_cast<double>(longest_texels)));
+  };
+  const auto decayed = [&](double rate) { return std::exp(-rate * length(rate)); };
+  const double angle = pair.turn_per_mm * length(pair.rate_per_mm[0]);
+  decay[0][lane] = static_cast<float>(decayed(pair.rate_per_mm[0]) * std::cos(angle));
+  decay[1][lane] = static_cast<float>(decayed(pair.rate_per_mm[1]) * std::cos(angle));
+  decay[2][lane] = static_cast<float>(-decayed(pair.rate_per_mm[0]) * std::sin(angle));
+}
+
+}  // namespace
+
+BlurTables make_blur_tables(const GaussianChain& chain, double mm_per_texel) {
+  BlurTables tables;
+  for (std::size_t k = 0; k < chain.weights.front().size(); ++k) {
+    for (int c = 0; c < 3; ++c) {
+      const std::vector<double>& variances = chain.variances_mm2[c];
+      const double variance = variances[k] - (k > 0 ? variances[k - 1] : 0);
+      params::BlurParams blur{};
+      blur.variance_mm2 = static_cast<float>(variance);
+      blur.deviation_mm = static_cast<float>(std::sqrt(variance));
+      blur.own_variance = k == 0 ? 1.0F / 12 : 0;
+      blur.own_deviation = k == 0 ? 0.3F : 0;
+      blur.weight = static_cast<float>(chain.weights[c][k]);
+      if (mm_per_texel > 0) place_taps(blur, tables.weights, static_cast<float>(mm_per_texel));
+      tables.blurs.push_back(blur);
+    }
+  }
+  if (tables.weights.empty()) tables.weights.push_back(0);
+  return tables;
+}
+
+std::array<params::PoleParams, 2> make_pole_tables(const Recursion& recursion, double mm_per_texel) {
+  std::array<params::PoleParams, 2> tables{};
+  for (int pass = 0; pass < 2; ++pass) {
+    params::PoleParams& table = tables[pass];
+    std::fill_n(table.rate, STATES, 1.0F);
+    std::fill_n(table.other_rate, STATES, 1.0F);
+    for (int k = 0; k < Recursion::pairs; ++k) {
+      for (int function = 0; function < 2; ++function) {
+        for (int c = 0; c < 3; ++c) {
+          const int lane = 8 * k + 4 * function + c;
+          const PolePair& pair = (function == 0 ? recursion.main : recursion.correction)[c][k];
+          const double sign = pass == 1 && function == 1 ? recursion.sign[c] : 1;
+          // The result of a complex pair is the real part of its share times p + i q.
+          const double other_sign = pair.turn_per_mm > 0 ? -sign : sign;
+          table.rate[lane] = static_cast<float>(pair.rate_per_mm[0]);
+          table.other_rate[lane] = static_cast<float>(pair.rate_per_mm[1]);
+          table.turn[lane] = static_cast<float>(pair.turn_per_mm);
+          table.share[lane] = static_cast<float>(sign * pair.share[0]);
+          table.other_share[lane] = static_cast<float>(other_sign * pair.share[1]);
+          if (mm_per_texel > 0) {
+            set_decay(table.half_texel, lane, pair, mm_per_texel, 0.5);
+            set_decay(table.texel, lane, pair, mm_per_texel, 1);
+          }
+        }
+      }
+    }
+  }
+  return tables;
+}
+
+}  // namespace dermis
