@@ -251,7 +251,8 @@ struct RotationParams {
 #define COUNTER_EMPTY_TEXELS 0
 #define COUNTER_EMPTY_PARTS 1
 #define COUNTER_UNLIT_PARTS 2
-#define TEXTURE_COUNTERS 3
+#define COUNTER_FINEST 3  // the smallest stretch, as the bits of a float above 0, which order as it does
+#define TEXTURE_COUNTERS 4
 
 // One texture.
 struct TextureParams {
@@ -266,13 +267,14 @@ struct TextureParams {
 
 // One blur of a channel: see GaussianChain. Where all texels are of one size, the host knows what it consists of.
 struct BlurParams {
-  float variance_mm2;  // of the blur
+  float total_deviation_mm;  // of the Gaussian
+  float variance_mm2;        // of the blur from the last one
   float deviation_mm;
-  float own_variance;   // of a texel, that counts too, in texels: 0 unless the source is the light
-  float own_deviation;  // what it adds to the deviation at most
   float weight;  // of the level in the result
-  int step;      // texels
-  int taps;      // on each side
+  int is_first;
+  int from_light;
+  int step;  // texels
+  int taps;  // on each side
   int first_weight;
 };
 

@@ -107,15 +107,35 @@ static inline vint steps_beyond(vfloat mm, vfloat least) {
   return whole(fmax(n, (vfloat)(1.0f)));
 }
 
-static vfloat blurred(const struct BlurParams* blur, global const float* weights, global const float* p, int along,
-                      const Runs* runs, vfloat stretch) {
-  const vfloat variance = blur->variance_mm2 + stretch * stretch * blur->own_variance;
-  const vfloat deviation = blur->deviation_mm + stretch * blur->own_deviation;
-  const vfloat mm = fmax(stretch, deviation * 0x1p-14f);
-  const vint step = blur->own_variance > 0.0f ? (vint)(1) : steps_within(mm, SPACING * deviation);
+static vfloat from_light(const struct BlurParams* blur, global const float* p, int along, const Runs* runs,
+                         vfloat stretch) {
+  const float deviation = blur->total_deviation_mm;
+  const vfloat mm = fmax(stretch, (vfloat)(deviation * (1.0f / MOST_TEXELS)));
+  const vint taps = steps_beyond(mm, (vfloat)(REACH * deviation));
+  const vfloat scale = mm / (deviation * M_SQRT2_F);
+  const int most = highest_lane(taps);
+  const int same = runs->room >= most;
+  vfloat below = erf(0.5f * scale);
+  vfloat norm = 2.0f * below;
+  vfloat sum = norm * load_floats(p);
+  for (int o = 1; o <= most; ++o) {
+    const vfloat above = erf(((float)o + 0.5f) * scale);
+    const vfloat weight = keep(AS_MASK(taps >= (vint)(o)), above - below);
+    sum = fma(weight, both_taps(p, along, runs, (vint)(o), same), sum);
+    norm = fma(weight, (vfloat)(2.0f), norm);
+    below = above;
+  }
+  return sum / norm;
+}
+
+static vfloat from_last(const struct BlurParams* blur, global const float* p, int along, const Runs* runs,
+                        vfloat stretch) {
+  const float deviation = blur->deviation_mm;
+  const vfloat mm = fmax(stretch, (vfloat)(deviation * (1.0f / MOST_TEXELS)));
+  const vint step = steps_within(mm, (vfloat)(SPACING * deviation));
   const vfloat step_mm = as_floats(step) * mm;
-  const vint taps = steps_beyond(step_mm, REACH * deviation);
-  const vfloat exponent = -0.5f * (step_mm * step_mm) / variance;
+  const vint taps = steps_beyond(step_mm, (vfloat)(REACH * deviation));
+  const vfloat exponent = -0.5f * (step_mm * step_mm) / blur->variance_mm2;
   const int most = highest_lane(taps);
   const int same = !any_bit(AS_MASK(step != (vint)(LANE(step, 0)))) && runs->room >= most * LANE(step, 0);
   vfloat sum = load_floats(p);
@@ -128,10 +148,15 @@ static vfloat blurred(const struct BlurParams* blur, global const float* weights
   return sum / norm;
 }
 
+static inline vfloat blurred(const struct BlurParams* blur, global const float* weights, global const float* p,
+                             int along, const Runs* runs, vfloat stretch) {
+  return blur->from_light ? from_light(blur, p, along, runs, stretch) : from_last(blur, p, along, runs, stretch);
+}
+
 #else
 
-static vfloat blurred(const struct BlurParams* blur, global const float* weights, global const float* p, int along,
-                      const Runs* runs, vfloat stretch) {
+static inline vfloat blurred(const struct BlurParams* blur, global const float* weights, global const float* p,
+                             int along, const Runs* runs, vfloat stretch) {
   global const float* weight = weights + blur->first_weight;
   const int same = runs->room >= blur->taps * blur->step;
   vfloat sum = weight[0] * load_floats(p);
@@ -143,15 +168,12 @@ static vfloat blurred(const struct BlurParams* blur, global const float* weights
 
 #endif
 
-// Whether a block within reach along the axis has light. The reach is that of the widest channel, and a bit.
-static int is_lit(const struct TextureParams* t, const struct BlurParams* blurs, global const uchar* lit, float finest,
+// Whether a block within reach of a blur along the axis has light.
+static int is_lit(const struct TextureParams* t, const struct BlurParams* blur, global const uchar* lit, float finest,
                   int down) {
-  float widest_texels = 0.0f;
-  for (int c = 0; c < 3; ++c) {
-    const float mm = fmax(finest, blurs[c].deviation_mm * 0x1p-14f);
-    widest_texels = fmax(widest_texels, blurs[c].deviation_mm / mm + blurs[c].own_deviation);
-  }
-  const int reach = (int)((REACH + 1.0f) * widest_texels) + 2;
+  const float deviation = blur->from_light ? blur->total_deviation_mm : blur->deviation_mm;
+  // Rounded up to a step, which is no more than the spacing, or a texel.
+  const int reach = (int)((REACH + 1.0f) * fmin(deviation / finest, MOST_TEXELS)) + 2;
   const int block = get_global_id(down);
   const int size = down ? BLOCK_HEIGHT : BLOCK_WIDTH;
   const int blocks = down ? t->blocks_y : t->blocks_x;
@@ -164,47 +186,61 @@ static int is_lit(const struct TextureParams* t, const struct BlurParams* blurs,
   return 0;
 }
 
-// One pass of one level, along u, or along v if `down`. `sum`: the levels so far, to add this one to, if it is the
-// vertical pass; `first`: there are none.
+// One pass of one level, along u, from the light or the last level into `between`, or along v from there into the level,
+// if `down`. `sum`: of the levels so far, to add this one to. The `lit` are as texture_prepare makes them, of each
+// channel of what is read and written.
 kernel void texture_blur(struct TextureParams t, global const struct BlurParams* level, global const float* weights,
                          int down, global const uchar* stretch, struct ImageParams stretch_at,
                          global const int* before, global const int* after, global const float* finest,
-                         global const uchar* source_lit, global const float* source, global uchar* target_lit,
-                         global float* target, global float* sum, int first, global int* counters) {
+                         global const uchar* light_lit, global const float* light, global uchar* between_lit,
+                         global float* between, global uchar* last_lit, global float* last, global float* sum,
+                         global int* counters) {
   const int block = get_global_id(1) * t.blocks_x + get_global_id(0);
   const size_t plane = plane_of(&t);
   const int x_begin = get_global_id(0) * BLOCK_WIDTH;
   const int x_end = min(x_begin + BLOCK_WIDTH, t.width);
   const int y_begin = get_global_id(1) * BLOCK_HEIGHT;
   const int y_end = min(y_begin + BLOCK_HEIGHT, t.height);
-  if (source_lit[block] == 0) {
-    target_lit[block] = 0;
+  if (light_lit[block] == 0) {
     atomic_inc(counters + COUNTER_EMPTY_PARTS);
     return;
   }
-  struct BlurParams blurs[3];
-  for (int c = 0; c < 3; ++c) blurs[c] = level[c];
-  const int lit = is_lit(&t, blurs, source_lit, finest[block], down);
-  target_lit[block] = lit ? 2 : 1;
-  if (!lit) atomic_inc(counters + COUNTER_UNLIT_PARTS);
+  const int blocks = t.blocks_x * t.blocks_y;
   const int along = down ? t.stride : 1;
-  for (int y = y_begin; y < y_end; ++y) {
-    for (int x = x_begin; x < x_end; x += V) {
-      const size_t at = texel_at(&t, x, y);
-      const Runs runs = runs_at(before, after, at);
-      vfloat its_stretch = (vfloat)(1.0f);
+  int any_lit = 0;
+  for (int c = 0; c < 3; ++c) {
+    struct BlurParams blur = level[c];
 #if HAS_STRETCH
-      its_stretch = select(its_stretch, read_values(row_of(stretch, &stretch_at, t.width, y, 0), x), runs.object);
+    const float finest_of_all = as_float(counters[COUNTER_FINEST]);
+    blur.from_light = blur.is_first || blur.total_deviation_mm <= NARROW * finest_of_all;
 #endif
-      for (int c = 0; c < 3; ++c) {
-        const size_t its = c * plane + at;
+    global const float* source = (down ? between : blur.from_light ? light : last) + c * plane;
+    global float* target = (down ? last : between) + c * plane;
+    global const uchar* source_lit = (down ? between_lit : blur.from_light ? light_lit : last_lit) + c * blocks;
+    const int lit = is_lit(&t, &blur, source_lit, finest[block], down);
+    (down ? last_lit : between_lit)[c * blocks + block] = lit ? 2 : 1;
+    any_lit |= lit;
+    for (int y = y_begin; y < y_end; ++y) {
+      for (int x = x_begin; x < x_end; x += V) {
+        const size_t at = texel_at(&t, x, y);
         vfloat value = (vfloat)(0.0f);
-        if (lit && any_bit(runs.object)) {
-          value = keep(runs.object, blurred(&blurs[c], weights, source + its, along, &runs, its_stretch));
+        if (lit) {
+          const Runs runs = runs_at(before, after, at);
+          vfloat its_stretch = (vfloat)(1.0f);
+#if HAS_STRETCH
+          its_stretch = select(its_stretch, read_values(row_of(stretch, &stretch_at, t.width, y, 0), x), runs.object);
+#endif
+          if (any_bit(runs.object)) {
+            value = keep(runs.object, blurred(&blur, weights, source + at, along, &runs, its_stretch));
+          }
         }
-        store_floats(target + its, value);
-        if (down) store_floats(sum + its, blurs[c].weight * value + (first ? (vfloat)(0.0f) : load_floats(sum + its)));
+        store_floats(target + at, value);
+        if (down) {
+          global float* its_sum = sum + c * plane + at;
+          store_floats(its_sum, fma((vfloat)(blur.weight), value, blur.is_first ? (vfloat)(0.0f) : load_floats(its_sum)));
+        }
       }
     }
   }
+  if (!any_lit) atomic_inc(counters + COUNTER_UNLIT_PARTS);
 }

@@ -31,8 +31,8 @@ static inline float lowest_of(vfloat v) {
   return lowest;
 }
 
-// `objects`: 1 per texel of an object. `block_lit`: 2 if some texel of a block has light, 1 if it has an object, else
-// 0. `finest`: the smallest stretches of its texels along u, then of all blocks along v, mm.
+// `objects`: 1 per texel of an object. `block_lit`, of each channel: 2 if some texel of a block has light, 1 if it has an
+// object, else 0. `finest`: the smallest stretches of its texels along u, then of all blocks along v, mm.
 kernel void texture_prepare(struct TextureParams t, TEXTURE_IMAGES, global float* light_out, global uchar* objects,
                             global uchar* block_lit, global float* finest, global int* counters) {
   const TextureImages in = ITS_TEXTURE_IMAGES;
@@ -41,7 +41,7 @@ kernel void texture_prepare(struct TextureParams t, TEXTURE_IMAGES, global float
   const int x_end = min(x_begin + BLOCK_WIDTH, t.width);
   const int y_begin = get_global_id(1) * BLOCK_HEIGHT;
   const int y_end = min(y_begin + BLOCK_HEIGHT, t.height);
-  vint lit = (vint)(0);
+  vint lit[3] = {(vint)(0), (vint)(0), (vint)(0)};
   vint count = (vint)(0);
   vfloat finest_u = (vfloat)(INFINITY);
   vfloat finest_v = (vfloat)(INFINITY);
@@ -52,7 +52,9 @@ kernel void texture_prepare(struct TextureParams t, TEXTURE_IMAGES, global float
       store_texels(light_out, plane_of(&t), at, &texels);
       store_bytes(objects + at, texels.object & 1);
       count -= texels.object;
-      lit |= AS_MASK(texels.light.r != 0.0f) | AS_MASK(texels.light.g != 0.0f) | AS_MASK(texels.light.b != 0.0f);
+      lit[0] |= AS_MASK(texels.light.r != 0.0f);
+      lit[1] |= AS_MASK(texels.light.g != 0.0f);
+      lit[2] |= AS_MASK(texels.light.b != 0.0f);
       finest_u = fmin(finest_u, select((vfloat)(INFINITY), texels.stretch_u, texels.object));
       finest_v = fmin(finest_v, select((vfloat)(INFINITY), texels.stretch_v, texels.object));
     }
@@ -61,9 +63,13 @@ kernel void texture_prepare(struct TextureParams t, TEXTURE_IMAGES, global float
 #define COUNT_LANE(lane) texel_count += LANE(count, lane);
   EACH_LANE(COUNT_LANE)
 #undef COUNT_LANE
-  block_lit[block] = any_bit(lit) ? 2 : texel_count > 0;
-  finest[block] = lowest_of(finest_u);
-  finest[t.blocks_x * t.blocks_y + block] = lowest_of(finest_v);
+  const int blocks = t.blocks_x * t.blocks_y;
+  for (int c = 0; c < 3; ++c) block_lit[c * blocks + block] = any_bit(lit[c]) ? 2 : texel_count > 0;
+  const float lowest_u = lowest_of(finest_u);
+  const float lowest_v = lowest_of(finest_v);
+  finest[block] = lowest_u;
+  finest[blocks + block] = lowest_v;
+  atomic_min(counters + COUNTER_FINEST, as_int(fmin(lowest_u, lowest_v)));
   const int empty = (x_end - x_begin) * (y_end - y_begin) - texel_count;
   if (empty > 0) atomic_add(counters + COUNTER_EMPTY_TEXELS, empty);
 }

@@ -62,26 +62,34 @@ struct TextureOptions {
   bool operator==(const TextureOptions&) const = default;
 };
 
-/// A profile as Gaussians of the plane, per channel by ascending variance, each made from the last by a blur of the
-/// difference of variances (d'Eon, GDC 2007; GPU Gems 3, section 14.4.3). At a texel of stretch s
+/// A profile as Gaussians of the plane, per channel by ascending variance, most of them made from the last by a blur of
+/// the difference of variances (d'Eon, GDC 2007; GPU Gems 3, section 14.4.3). At a texel of stretch s
 ///
-///     blur_k(i) = sum_o w_o blur_(k-1)(i + o n) / sum_o w_o,    w_o = exp(-(o n s)^2 / (2 d)),   |o| <= taps
-///     d = variance_k - variance_(k-1);  of the first blur variance_1 + s^2 / 12, a texel being so wide itself
-///     n = the largest whole number with n s <= spacing sqrt(d), at least 1;  of the first blur 1
-///     taps = the smallest whole number with taps n s >= reach sqrt(d), at least 1;  of the first blur in place of
-///            sqrt(d) sqrt(variance_1) + 0.3 s, which is no less
+///     blur_k(i) = sum_o w_o source(i + o n) / sum_o w_o,    |o| <= taps
 ///
-/// along u, then along v, i + o n mirrored at the ends of the run; blur_0 is the light itself, and the result the sum
-/// over k of weight_k blur_k. What n skips the blur before has smoothed. A deviation sqrt(d) of more than 2^14 texels
-/// counts as one of 2^14. The products in n and taps are those of float32.
+/// along u, then along v, i + o n mirrored at the ends of the run; the result is the sum over k of weight_k blur_k. The
+/// first Gaussian, and those of a deviation of at most `narrow` of the smallest stretch of all texels, are made from
+/// the light itself, by what of the Gaussian falls on each texel:
+///
+///     w_o = erf((o + 1/2) s / sqrt(2 d)) - erf((o - 1/2) s / sqrt(2 d)),   d = variance_k,   n = 1
+///
+/// and the others from blur_(k-1), which is smooth, so that a few taps will do:
+///
+///     w_o = exp(-(o n s)^2 / (2 d)),   d = variance_k - variance_(k-1)
+///     n = the largest whole number with n s <= spacing sqrt(d), at least 1
+///
+/// taps is the smallest whole number with taps n s >= reach sqrt(d), at least 1. A sqrt(d) of more than most_texels
+/// counts as that many. The products in n and taps are those of float32.
 struct GaussianChain {
   std::array<std::vector<double>, 3> variances_mm2;
   std::array<std::vector<double>, 3> weights;  ///< >= 0; of each channel they sum to 1
   /// Expected relative L2 distance of the sum from the profile over natural images, as TapSet::predicted_rel_l2.
   double predicted_rel_l2 = 0;
 
+  static constexpr float narrow = 2;
   static constexpr float spacing = 0.75F;
   static constexpr float reach = 4;
+  static constexpr float most_texels = 1024;
 };
 
 /// Two exponentials of a function f(x) of one channel, f being the sum over its pairs. Of real rates, turn 0,

@@ -1,4 +1,5 @@
 // How far the surface under each texel reaches, from where its points are.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
@@ -69,6 +70,7 @@ StretchMaps stretch_of_positions(int width, int height, const Image& position, c
     }
     return !mask || masks.at(x, y, 0) > 0;
   };
+  constexpr double least_mm = 1e-9;  // points that coincide are still of an object
   const auto stretch_along = [&](int x, int y, int dx, int dy) {
     double sum = 0;
     int count = 0;
@@ -79,7 +81,7 @@ StretchMaps stretch_of_positions(int width, int height, const Image& position, c
       sum += std::hypot(there[0] - here[0], there[1] - here[1], there[2] - here[2]);
       ++count;
     }
-    return count == 0 ? 1.0F : static_cast<float>(sum / count * mm_per_unit);
+    return count == 0 ? 1.0F : static_cast<float>(std::max(sum / count * mm_per_unit, least_mm));
   };
   StretchMaps maps;
   for (int y = 0; y < height; ++y) {

@@ -28,7 +28,8 @@ cl::Program build(const TexturePlan::State& state) {
   options << std::scientific << "-cl-std=CL1.2 -DLIT=0 -DV=" << state.vector_width
           << " -DRECURSIVE=" << state.is_recursive() << " -DHAS_ALBEDO=" << state.description.albedo
           << " -DHAS_MASK=" << state.description.mask << " -DHAS_STRETCH=" << state.description.stretch
-          << " -DSPACING=" << GaussianChain::spacing << "f -DREACH=" << GaussianChain::reach << "f";
+          << " -DSPACING=" << GaussianChain::spacing << "f -DREACH=" << GaussianChain::reach
+          << "f -DNARROW=" << GaussianChain::narrow << "f -DMOST_TEXELS=" << GaussianChain::most_texels << "f";
   return build_program(
       state.device,
       {"texture_prepare.cl", state.is_recursive() ? "recursion.cl" : "texture_blur.cl", "texture_finish.cl"},

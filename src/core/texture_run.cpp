@@ -1,6 +1,7 @@
 #include "core/texture_run.hpp"
 
 #include <array>
+#include <limits>
 #include <utility>
 
 namespace dermis {
@@ -61,11 +62,12 @@ TextureMemory::TextureMemory(const cl::Context& context, const TextureSizes& wan
   light = allocate(plane_bytes * (sizes.recursive ? 4 : 3));
   between = allocate(plane_bytes * (sizes.recursive ? 8 : 3));
   sum = sizes.recursive ? light : allocate(3 * plane_bytes);
+  last = sizes.recursive ? light : allocate(3 * plane_bytes);
   objects = allocate(sizes.texels());
   if (!sizes.recursive) {
     for (cl::Buffer& its : runs) its = allocate(sizes.texels() * sizeof(cl_int));
   }
-  for (cl::Buffer& its : lit) its = allocate(sizes.blocks());
+  for (cl::Buffer* its : {&light_lit, &between_lit, &last_lit}) *its = allocate(3 * sizes.blocks());
   finest = allocate(2 * sizes.blocks() * sizeof(float));
   counters = allocate(TEXTURE_COUNTERS * sizeof(cl_int));
 }
@@ -78,7 +80,9 @@ TextureRun::TextureRun(const TexturePlan::State& plan, const TextureFrame& frame
       queue_(std::move(queue)),
       context_(plan.device.context(), true),
       params_(texture_params(plan, frame, memory.sizes)) {
-  queue_.enqueueFillBuffer(memory_.counters, cl_int{0}, 0, TEXTURE_COUNTERS * sizeof(cl_int));
+  queue_.enqueueFillBuffer(memory_.counters, cl_int{0}, 0, COUNTER_FINEST * sizeof(cl_int));
+  queue_.enqueueFillBuffer(memory_.counters, std::numeric_limits<cl_int>::max(), COUNTER_FINEST * sizeof(cl_int),
+                           sizeof(cl_int));
 }
 
 cl::Event TextureRun::launch(cl::Kernel& kernel, int columns, int rows) {
@@ -97,7 +101,7 @@ void TextureRun::prepare() {
                 images_.buffer(TextureImage::mask), images_.layout(TextureImage::mask),                           //
                 images_.buffer(TextureImage::stretch_u), images_.layout(TextureImage::stretch_u),                 //
                 images_.buffer(TextureImage::stretch_v), images_.layout(TextureImage::stretch_v), memory_.light,  //
-                memory_.objects, memory_.lit[0], memory_.finest, memory_.counters);
+                memory_.objects, memory_.light_lit, memory_.finest, memory_.counters);
   prepare_.push_back(launch_blocks(kernel));
   if (plan_.is_recursive()) return;
   cl::Kernel along_u(plan_.program, "texture_runs_u");
@@ -124,12 +128,11 @@ void TextureRun::blur() {
     const cl::Buffer level = upload(context_, tables.blurs.data() + 3 * k, 3);
     for (const int down : {0, 1}) {
       const TextureImage stretch = down == 0 ? TextureImage::stretch_u : TextureImage::stretch_v;
-      const cl::Buffer& source = down == 0 ? memory_.light : memory_.between;
-      const cl::Buffer& target = down == 0 ? memory_.between : memory_.light;
       cl::Kernel kernel(plan_.program, "texture_blur");
       set_arguments(kernel, params_, level, weights, down, images_.buffer(stretch), images_.layout(stretch),
-                    memory_.runs[2 * down], memory_.runs[2 * down + 1], memory_.finest, memory_.lit[down], source,
-                    memory_.lit[1 - down], target, memory_.sum, k == 0 ? 1 : 0, memory_.counters);
+                    memory_.runs[2 * down], memory_.runs[2 * down + 1], memory_.finest, memory_.light_lit,
+                    memory_.light, memory_.between_lit, memory_.between, memory_.last_lit, memory_.last, memory_.sum,
+                    memory_.counters);
       scatter_.push_back(launch_blocks(kernel));
       parts_ += static_cast<std::int64_t>(memory_.sizes.blocks());
     }

@@ -28,12 +28,13 @@ struct TextureSizes {
 /// Buffers for one run at a time.
 struct TextureMemory {
   TextureSizes sizes;
-  cl::Buffer light;    ///< in; of the Gaussians every level in its turn
-  cl::Buffer between;  ///< after the pass along u
-  cl::Buffer sum;      ///< out; of recursion in place of the light
-  cl::Buffer objects;  ///< 1 per texel of an object
-  cl::Buffer runs[4];  ///< of the Gaussians: texels before and after along u, then along v
-  cl::Buffer lit[2];   ///< per block: of the light, and between
+  cl::Buffer light;                             ///< in
+  cl::Buffer between;                           ///< after the pass along u
+  cl::Buffer last;                              ///< of the Gaussians: the last level
+  cl::Buffer sum;                               ///< out; of recursion in place of the light
+  cl::Buffer objects;                           ///< 1 per texel of an object
+  cl::Buffer runs[4];                           ///< of the Gaussians: texels before and after along u, then along v
+  cl::Buffer light_lit, between_lit, last_lit;  ///< per channel and block: see texture_prepare.cl
   cl::Buffer finest;
   cl::Buffer counters;
 

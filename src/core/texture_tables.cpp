@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <numbers>
 
 namespace dermis {
 
 namespace {
 
-constexpr float longest_texels = 0x1p14F;
+constexpr double longest_texels = 0x1p14;  // as LEAST_HALF_TEXEL of recursion.cl
 
 /// As in texture_blur.cl.
 int steps_within(float mm, float most) {
@@ -26,29 +27,27 @@ int steps_beyond(float mm, float least) {
 }
 
 void place_taps(params::BlurParams& blur, std::vector<float>& weights, float mm_per_texel) {
-  const float deviation_mm = blur.deviation_mm + mm_per_texel * blur.own_deviation;
-  const float mm = std::max(mm_per_texel, deviation_mm / longest_texels);
-  blur.step = blur.own_variance > 0 ? 1 : steps_within(mm, GaussianChain::spacing * deviation_mm);
+  blur.from_light = blur.is_first != 0 || blur.total_deviation_mm <= GaussianChain::narrow * mm_per_texel ? 1 : 0;
+  const float deviation_mm = blur.from_light != 0 ? blur.total_deviation_mm : blur.deviation_mm;
+  const float mm = std::max(mm_per_texel, deviation_mm * (1 / GaussianChain::most_texels));
+  blur.step = blur.from_light != 0 ? 1 : steps_within(mm, GaussianChain::spacing * deviation_mm);
   const float step_mm = static_cast<float>(blur.step) * mm;
   blur.taps = steps_beyond(step_mm, GaussianChain::reach * deviation_mm);
   blur.first_weight = static_cast<int>(weights.size());
-  const double own = static_cast<double>(mm_per_texel) * mm_per_texel * static_cast<double>(blur.own_variance);
-  const double variance = static_cast<double>(blur.variance_mm2) + own;
-  std::vector<double> shares;
-  double sum = 0;
-  for (int o = 0; o <= blur.taps; ++o) {
-    const double distance_mm = static_cast<double>(o) * static_cast<double>(step_mm);
-    shares.push_back(o == 0 ? 1 : std::exp(-distance_mm * distance_mm / (2 * variance)));
-    sum += (o == 0 ? 1 : 2) * shares.back();
-  }
-  for (const double share : shares) weights.push_back(static_cast<float>(share / sum));
+  const double step = static_cast<double>(step_mm) / static_cast<double>(deviation_mm);
+  const auto up_to = [&](double o) { return std::erf(o * step / std::numbers::sqrt2); };
+  const auto share = [&](int o) {
+    if (blur.from_light != 0) return o == 0 ? 2 * up_to(0.5) : up_to(o + 0.5) - up_to(o - 0.5);
+    return o == 0 ? 1 : std::exp(-o * step * (o * step) / 2);
+  };
+  double sum = share(0);
+  for (int o = 1; o <= blur.taps; ++o) sum += 2 * share(o);
+  for (int o = 0; o <= blur.taps; ++o) weights.push_back(static_cast<float>(share(o) / sum));
 }
 
 /// Over so much of a texel.
 void set_decay(float (&decay)[3][STATES], int lane, const PolePair& pair, double mm_per_texel, double part) {
-  const auto length = [&](double rate) {
-    return part * std::max(mm_per_texel, 1 / (rate * static_cast<double>(longest_texels)));
-  };
+  const auto length = [&](double rate) { return part * std::max(mm_per_texel, 1 / (rate * longest_texels)); };
   const auto decayed = [&](double rate) { return std::exp(-rate * length(rate)); };
   const double angle = pair.turn_per_mm * length(pair.rate_per_mm[0]);
   decay[0][lane] = static_cast<float>(decayed(pair.rate_per_mm[0]) * std::cos(angle));
@@ -65,11 +64,11 @@ BlurTables make_blur_tables(const GaussianChain& chain, double mm_per_texel) {
       const std::vector<double>& variances = chain.variances_mm2[c];
       const double variance = variances[k] - (k > 0 ? variances[k - 1] : 0);
       params::BlurParams blur{};
+      blur.total_deviation_mm = static_cast<float>(std::sqrt(variances[k]));
       blur.variance_mm2 = static_cast<float>(variance);
       blur.deviation_mm = static_cast<float>(std::sqrt(variance));
-      blur.own_variance = k == 0 ? 1.0F / 12 : 0;
-      blur.own_deviation = k == 0 ? 0.3F : 0;
       blur.weight = static_cast<float>(chain.weights[c][k]);
+      blur.is_first = k == 0 ? 1 : 0;
       if (mm_per_texel > 0) place_taps(blur, tables.weights, static_cast<float>(mm_per_texel));
       tables.blurs.push_back(blur);
     }
