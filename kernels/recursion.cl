@@ -9,6 +9,7 @@
 // so that under constant light p = P light and q = Q light stay what they are. The lanes of a float16 are the pairs of
 // both functions in all channels: see STATES.
 #pragma OPENCL FP_CONTRACT OFF
+#include "decay.h"
 #include "texture.h"
 
 // No exponential counts as longer than 2^14 texels, so that float32 tells one texel's decay from none.
@@ -104,15 +105,17 @@ static inline float16 light_at_texel(const Line* line, int i) {
 static inline Decay half_texel_at(const Poles* poles, const Line* line, int i) {
 #if HAS_STRETCH
   const float16 half_mm = 0.5f * value_at(line->stretch + i * line->stretch_along, line->stretch_format);
-  const float16 one = exp(-fmax(poles->rate * half_mm, LEAST_HALF_TEXEL));
-  const float16 other = exp(-fmax(poles->other_rate * half_mm, LEAST_HALF_TEXEL));
+  const float16 one = exp_of_minus(fmax(poles->rate * half_mm, LEAST_HALF_TEXEL));
+  const float16 other = exp_of_minus(fmax(poles->other_rate * half_mm, LEAST_HALF_TEXEL));
   Decay decay = {one, other, (float16)(0.0f)};
   if (poles->turns) {
-    const float16 angle = poles->turn * fmax(half_mm, LEAST_HALF_TEXEL / poles->rate);
-    const float16 cosine = cos(angle);
+    // Where an angle is too large for the cosine, nothing is left.
+    const float16 angle = poles->turn * fmin(fmax(half_mm, LEAST_HALF_TEXEL / poles->rate), 85.0f / poles->rate);
+    float16 sine;
+    const float16 cosine = cos_and_sin(angle, &sine);
     decay.a = one * cosine;
     decay.c = other * cosine;
-    decay.b = -one * sin(angle);
+    decay.b = -one * sine;
   }
   return decay;
 #else
