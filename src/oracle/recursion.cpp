@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <utility>
 #include <vector>
 
 #include "oracle/texture_light.hpp"
@@ -41,9 +42,10 @@ std::vector<double> borders_of(const TextureLight& in, const Run& run, double ra
   return borders;
 }
 
-/// What each texel of a run gives to texel i: the integral over it of gamma / 2 times the sum over all images of the
-/// point between two mirrors of exp(-gamma distance).
-std::vector<Complex> shares_of(const std::vector<double>& borders, std::size_t i, Complex gamma) {
+/// What each texel of a run gives to texel i: the real part of the pole's share times the integral over the texel of
+/// gamma / 2 times the sum over all images of a point between two mirrors of exp(-gamma distance).
+void append_shares(std::vector<double>& shares, const std::vector<double>& borders, std::size_t i, const Pole& pole) {
+  const Complex gamma = pole.gamma;
   const double size = borders.back();
   const double here = (borders[i] + borders[i + 1]) / 2;
   const Complex all_images = 1.0 - std::exp(-2 * size * gamma);
@@ -58,15 +60,31 @@ std::vector<Complex> shares_of(const std::vector<double>& borders, std::size_t i
     direct.push_back(up_to(std::abs(border - here)));
     mirrored.push_back(up_to(here + border));
   }
-  std::vector<Complex> shares;
   for (std::size_t j = 0; j + 1 < borders.size(); ++j) {
     const Complex own = j == i  ? direct[j] + direct[j + 1]
                         : j < i ? direct[j] - direct[j + 1]
                                 : direct[j + 1] - direct[j];
-    shares.push_back(own + mirrored[j + 1] - mirrored[j]);
+    shares.push_back((pole.share * (own + mirrored[j + 1] - mirrored[j])).real());
   }
-  return shares;
 }
+
+/// The same for all texels of a run, one after the other; the last ones kept, as lines are often alike.
+class SharesOnRuns {
+ public:
+  explicit SharesOnRuns(const Pole& pole) : pole_(pole) {}
+
+  const std::vector<double>& of(std::vector<double> borders) {
+    if (borders == borders_) return shares_;
+    borders_ = std::move(borders);
+    shares_.clear();
+    for (std::size_t i = 0; i + 1 < borders_.size(); ++i) append_shares(shares_, borders_, i, pole_);
+    return shares_;
+  }
+
+ private:
+  Pole pole_;
+  std::vector<double> borders_, shares_;
+};
 
 /// How far float32 recursion may be off for one pole, per size of the largest light. With A = |gamma| / rate, the size
 /// of a state against the light, and d the roundings of z, a step adds 8 A roundings and d (A + 1), of which N steps
@@ -85,33 +103,37 @@ double pole_error(const TextureLight& in, const Run& run, const Pole& pole) {
   return unit_roundoff * std::abs(pole.share) * (20 * size + 3 * size * per_step * steps);
 }
 
+/// The largest light of a run, and the largest error of it.
+Bounded largest_of(const BoundedPicture& source, const Run& run, int c) {
+  Bounded largest;
+  for (int i = 0; i < run.length(); ++i) {
+    const Bounded light = source.at(run.x(i), run.y(i), c);
+    largest = {std::max(largest.value, light.magnitude()), std::max(largest.error, light.error)};
+  }
+  return largest;
+}
+
 BoundedPicture pass(const TextureLight& in, const BoundedPicture& source,
                     const std::array<Recursion::Function, 3>& functions, int axis) {
   BoundedPicture result(in.width(), in.height());
+  const std::vector<Run> runs = runs_along(in.object, axis);
   for (int c = 0; c < 3; ++c) {
-    const std::vector<Pole> poles = poles_of(functions[c]);
-    for (const Run& run : runs_along(in.object, axis)) {
-      double largest = 0;
-      double largest_error = 0;
-      for (int i = 0; i < run.length(); ++i) {
-        const Bounded light = source.at(run.x(i), run.y(i), c);
-        largest = std::max(largest, light.magnitude());
-        largest_error = std::max(largest_error, light.error);
-      }
-      std::vector<double> sums(run.length(), 0.0);
-      double error = 0;
-      for (const Pole& pole : poles) {
-        const std::vector<double> borders = borders_of(in, run, pole.gamma.real());
+    for (const Pole& pole : poles_of(functions[c])) {
+      SharesOnRuns shares_on_runs(pole);
+      for (const Run& run : runs) {
+        const std::vector<double>& shares = shares_on_runs.of(borders_of(in, run, pole.gamma.real()));
+        const Bounded largest = largest_of(source, run, c);
+        const double size = std::abs(pole.share) * std::abs(pole.gamma) / pole.gamma.real();
+        const double error = size * largest.error + pole_error(in, run, pole) * largest.value + smallest_normal;
         for (int i = 0; i < run.length(); ++i) {
-          const std::vector<Complex> shares = shares_of(borders, i, pole.gamma);
+          double sum = 0;
           for (int j = 0; j < run.length(); ++j) {
-            sums[i] += (pole.share * shares[j]).real() * source.value(run.x(j), run.y(j), c);
+            sum += shares[static_cast<std::size_t>(i) * run.length() + j] * source.value(run.x(j), run.y(j), c);
           }
+          const Bounded so_far = result.at(run.x(i), run.y(i), c);
+          result.set(run.x(i), run.y(i), c, {so_far.value + sum, so_far.error + error});
         }
-        error += std::abs(pole.share) * std::abs(pole.gamma) / pole.gamma.real() * largest_error +
-                 pole_error(in, run, pole) * largest;
       }
-      for (int i = 0; i < run.length(); ++i) result.set(run.x(i), run.y(i), c, {sums[i], error + smallest_normal});
     }
   }
   return result;
