@@ -29,6 +29,8 @@ double loads_of(const Case& what) {
     case Family::opencv_bilateral:
       return 15 * 15;
     case Family::dermis_exact:
+    case Family::texture_gaussians:
+    case Family::texture_recursive:
     case Family::fft:
       return 0;
   }
@@ -41,6 +43,9 @@ std::unique_ptr<Opponent> make_opponent(const Case& what, const Scene& scene, co
     case Family::dermis_exact:
     case Family::start_up:
       return make_dermis(what, scene, device);
+    case Family::texture_gaussians:
+    case Family::texture_recursive:
+      return make_texture(what, scene, device);
     case Family::naive:
       return make_naive(what, scene, device);
     case Family::rule_2012:

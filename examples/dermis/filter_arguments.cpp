@@ -20,8 +20,10 @@ namespace {
 
 void add_method_arguments(CLI::App& app, FilterArguments& arguments) {
   Options& options = arguments.options;
-  app.add_option("--method", arguments.method, "separable, or exact: the slow integral over the surface")
-      ->check(one_of({"separable", "exact"}))
+  app.add_option("--method", arguments.method,
+                 "separable, or exact: the slow integral over the surface; in texture space gaussians, each blur made "
+                 "from the last, or recursive, in a time that does not depend on their width")
+      ->check(one_of({"separable", "exact", "gaussians", "recursive"}))
       ->default_str("separable");
   add_quality_arguments(app, arguments.quality);
   add_design_arguments(app, arguments.design);
@@ -124,6 +126,7 @@ void add_filter_arguments(CLI::App& app, FilterArguments& arguments) {
   add_reading_arguments(app, arguments.picture);
   add_output_arguments(app, arguments);
   add_material_arguments(app, arguments.materials);
+  add_texture_arguments(app, arguments.texture);
   add_method_arguments(app, arguments);
   add_bad_pixels_argument(app, arguments.bad_pixels);
   add_device_arguments(app, arguments);
@@ -179,6 +182,7 @@ bool is_automatic(const FilterArguments& arguments) {
 }
 
 Options options_of(const FilterArguments& arguments) {
+  check_space_of_screen(arguments.texture, arguments.method);
   if (!arguments.picture.mm_per_unit)
     throw Error(ErrorCode::usage, "--mm-per-unit", "nothing",
                 "millimetres per scene unit (no default, since it decides how far light spreads)");

@@ -10,9 +10,11 @@ void add_picture_arguments(CLI::App& app, PictureArguments& arguments) {
 }
 
 void add_reading_arguments(CLI::App& app, PictureArguments& arguments) {
-  app.add_option("--role", arguments.roles,
-                 "take light, albedo, depth, position, normal, material, mask, specular or beauty from these channels "
-                 "(1 or 3 names with commas, or one prefix; + adds); repeatable")
+  app.add_option(
+         "--role", arguments.roles,
+         "take light, albedo, depth, position, normal, material, mask, specular, beauty, stretch_u or stretch_v from "
+         "these channels "
+         "(1 or 3 names with commas, or one prefix; + adds); repeatable")
       ->allow_extra_args(false)
       ->type_name("ROLE=CHANNELS");
   app.add_option("--layer", arguments.layer, "the view layer, if there are several; else the first")->type_name("NAME");
