@@ -9,8 +9,8 @@
 // so that under constant light p = P light and q = Q light stay what they are. The lanes of a float16 are the pairs of
 // both functions in all channels: see STATES.
 #pragma OPENCL FP_CONTRACT OFF
-#include "decay.h"
 #include "texture.h"
+#include "decay.h"
 
 // No exponential counts as longer than 2^14 texels, so that float32 tells one texel's decay from none.
 #define LEAST_HALF_TEXEL 0x1p-15f

@@ -1,6 +1,7 @@
 // texture_runs_u, texture_runs_v, texture_blur: the chain of Gaussians of texture.hpp. A work-item of the first has a
 // row, of the second V columns, of the last a block.
 #pragma OPENCL FP_CONTRACT OFF
+#include "exponential.h"
 #include "texture.h"
 
 // Texels of the run before and after each one, -1 before an empty one.
@@ -91,6 +92,31 @@ static inline vfloat both_taps(global const float* p, int along, const Runs* run
 
 #if HAS_STRETCH
 
+#if V == 1
+DEFINE_EXP_OF_MINUS(exp_of_minus, float, int)
+#elif V == 4
+DEFINE_EXP_OF_MINUS(exp_of_minus, float4, int4)
+#elif V == 8
+DEFINE_EXP_OF_MINUS(exp_of_minus, float8, int8)
+#else
+DEFINE_EXP_OF_MINUS(exp_of_minus, float16, int16)
+#endif
+
+// 1 - erf(x) for x >= 0, within 1.2e-7 of itself and rounding (Press et al., Numerical Recipes, section 6.2, erfcc).
+static inline vfloat erf_tail(vfloat x) {
+  const vfloat t = 1.0f / fma(x, (vfloat)(0.5f), (vfloat)(1.0f));
+  vfloat p = fma(t, (vfloat)(0.17087277f), (vfloat)(-0.82215223f));
+  p = fma(t, p, (vfloat)(1.48851587f));
+  p = fma(t, p, (vfloat)(-1.13520398f));
+  p = fma(t, p, (vfloat)(0.27886807f));
+  p = fma(t, p, (vfloat)(-0.18628806f));
+  p = fma(t, p, (vfloat)(0.09678418f));
+  p = fma(t, p, (vfloat)(0.37409196f));
+  p = fma(t, p, (vfloat)(1.00002368f));
+  p = fma(t, p, (vfloat)(-1.26551223f));
+  return t * exp_of_minus(fma(x, x, -p));
+}
+
 // The largest n with n mm <= most, at least 1, and the smallest with n mm >= least, at least 1. Products are rounded
 // alike everywhere, and quotients are not.
 static inline vint steps_within(vfloat mm, vfloat most) {
@@ -115,12 +141,12 @@ static vfloat from_light(const struct BlurParams* blur, global const float* p, i
   const vfloat scale = mm / (deviation * M_SQRT2_F);
   const int most = highest_lane(taps);
   const int same = runs->room >= most;
-  vfloat below = erf(0.5f * scale);
-  vfloat norm = 2.0f * below;
+  vfloat below = erf_tail(0.5f * scale);
+  vfloat norm = 2.0f - 2.0f * below;
   vfloat sum = norm * load_floats(p);
   for (int o = 1; o <= most; ++o) {
-    const vfloat above = erf(((float)o + 0.5f) * scale);
-    const vfloat weight = keep(AS_MASK(taps >= (vint)(o)), above - below);
+    const vfloat above = erf_tail(((float)o + 0.5f) * scale);
+    const vfloat weight = keep(AS_MASK(taps >= (vint)(o)), below - above);
     sum = fma(weight, both_taps(p, along, runs, (vint)(o), same), sum);
     norm = fma(weight, (vfloat)(2.0f), norm);
     below = above;
@@ -135,13 +161,13 @@ static vfloat from_last(const struct BlurParams* blur, global const float* p, in
   const vint step = steps_within(mm, (vfloat)(SPACING * deviation));
   const vfloat step_mm = as_floats(step) * mm;
   const vint taps = steps_beyond(step_mm, (vfloat)(REACH * deviation));
-  const vfloat exponent = -0.5f * (step_mm * step_mm) / blur->variance_mm2;
+  const vfloat exponent = 0.5f * (step_mm * step_mm) / blur->variance_mm2;
   const int most = highest_lane(taps);
   const int same = !any_bit(AS_MASK(step != (vint)(LANE(step, 0)))) && runs->room >= most * LANE(step, 0);
   vfloat sum = load_floats(p);
   vfloat norm = (vfloat)(1.0f);
   for (int o = 1; o <= most; ++o) {
-    const vfloat weight = keep(AS_MASK(taps >= (vint)(o)), exp(exponent * ((float)o * (float)o)));
+    const vfloat weight = keep(AS_MASK(taps >= (vint)(o)), exp_of_minus(exponent * ((float)o * (float)o)));
     sum = fma(weight, both_taps(p, along, runs, step * o, same), sum);
     norm = fma(weight, (vfloat)(2.0f), norm);
   }

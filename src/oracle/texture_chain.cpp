@@ -33,9 +33,10 @@ double weight_of(bool from_light, int o, double step, double variance) {
   return std::erf((o + 0.5) * scale) - std::erf((o - 0.5) * scale);
 }
 
-/// What rounding may do to it. exp is good to 3 ulp, 6 roundings, and its argument to 12: a length in mm and its square
-/// (4), a quotient (6), the products (2). erf is good to 16 ulp, which below 1 are 16 roundings of 1, and its argument
-/// to 10, whose derivative times the argument is at most 1/2: twice 21, and the difference.
+/// What rounding may do to it. exp is good to 6 roundings, and its argument to 12: a length in mm and its square (4), a
+/// quotient (6), the products (2). Of erf an approximation that is good to 1.2e-7, 2 roundings of 1, has 10 more in its
+/// polynomial and 4 in its exponential; its argument is good to 10, whose derivative times the argument is at most 1/2:
+/// that twice, 42, and the difference.
 double weight_error(bool from_light, int o, double step, double variance) {
   const double weight = weight_of(from_light, o, step, variance);
   if (from_light) return 44 * unit_roundoff;

@@ -54,9 +54,9 @@ void compare(const GuardedImage& output, const oracle::Picture& expected, const 
 TEST_CASE("textures equal the oracle within float rounding", "[texture]") {
   const TextureMethod method = GENERATE(TextureMethod::gaussians, TextureMethod::recursive);
   const Device device = Device::open();
-  constexpr int sizes[][2] = {{1, 1}, {7, 5}, {129, 40}, {33, 64}, {100, 3}, {2, 90}};
+  constexpr int sizes[][2] = {{1, 1}, {7, 5}, {97, 35}, {33, 64}, {100, 3}, {2, 90}};
   Tally tally;
-  for (unsigned round = 0; round < 12; ++round) {
+  for (unsigned round = 0; round < 10; ++round) {
     Random random(1000 + round);
     const auto& [width, height] = sizes[round % 6];
     RandomTexture texture(random, {.width = width, .height = height, .method = method});

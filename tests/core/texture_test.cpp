@@ -134,7 +134,10 @@ TEST_CASE("of every kind of profile the poles are known to be as good as they ar
   Random random(1200);
   const std::vector<SomeProfile> profiles = profiles_of_every_kind(1201);
   const int measured = random.integer(0, static_cast<int>(profiles.size()) - 1);
+  const int table = random.integer(0, 2);  // they take longest
+  int tables = 0;
   for (std::size_t i = 0; i < profiles.size(); ++i) {
+    if (!profiles[i].breaks.empty() && tables++ != table) continue;
     const Profile& profile = profiles[i].profile;
     CAPTURE(test_seed(), profiles[i].name);
     dermis::Recursion recursion;
@@ -171,7 +174,7 @@ TEST_CASE("where texels are alike a texture is scattered as a card is", "[textur
                             .light = {.host = texture.light.data()},
                             .camera = dermis::Camera::orthographic(1 / mm, 1 / mm),
                             .scattered = {.host = flat.data()}};
-  const dermis::TapsDesign design{.model = dermis::Model::gaussians, .rank = 6, .count = 257};
+  const dermis::TapsDesign design{.model = dermis::Model::gaussians, .rank = 6, .count = 49, .widest_px = 64};
   dermis::Plan(Device::open(), {{.profile = skin}}, {}, {.taps = design}).run(frame);
   const double taps_error = dermis::make_tap_set(skin, design, mm).predicted_rel_l2;
   // Taps end at the edge of a frame and textures are mirrored there.
@@ -190,28 +193,38 @@ TEST_CASE("where texels are alike a texture is scattered as a card is", "[textur
     texture.scatter(skin, method);
     const double error = relative_l2(middle(texture.scattered), middle(flat));
     CAPTURE(test_seed(), static_cast<int>(method), mm, taps_error, error);
-    // A checkered light has more of high frequencies than images have, by which errors are predicted.
-    CHECK(error < (method == TextureMethod::gaussians ? 0.001 : 0.004) + 2 * taps_error);
+    // The weights of a flat cell are made for kernels up to 1/256 of an octave narrower or wider: 0.27 %. A checkered
+    // light has more of high frequencies than images have, by which errors are predicted.
+    CHECK(error < 0.0027 + (method == TextureMethod::gaussians ? 0.001 : 0.004) + 2 * taps_error);
   }
 }
 
 TEST_CASE("a layout that is stretched agrees with one that is not", "[texture]") {
   Random random(1220);
   const double mm = skin_width_mm / 8;
-  Texture square = random_texture(random, 150, 90, mm);
-  for (const TextureMethod method : {TextureMethod::gaussians, TextureMethod::recursive}) {
-    for (const bool along_u : {true, false}) {
-      const int across = along_u ? 2 : 1;
-      const int down = along_u ? 1 : 2;
-      Texture stretched{across * square.width, down * square.height, {}};
-      for (int y = 0; y < stretched.height; ++y) {
-        for (int x = 0; x < stretched.width; ++x) {
-          for (int c = 0; c < 3; ++c) stretched.light.push_back(square.light[square.at(x / across, y / down, c)]);
-          stretched.stretch_u.push_back(static_cast<float>(mm / across));
-          stretched.stretch_v.push_back(static_cast<float>(mm / down));
-        }
+  const double waves[] = {random.uniform(0.1, 0.5), random.uniform(0.1, 0.5), random.uniform(0.1, 0.5)};
+  // In texels of the square layout.
+  const auto light_at = [&](double x, double y, int c) {
+    return static_cast<float>(1 + 0.6 * std::sin(waves[c] * x) * std::cos(waves[(c + 1) % 3] * y) +
+                              0.3 * std::sin(waves[2] * y));
+  };
+  const auto layout = [&](int across, int down) {
+    Texture texture{150 * across, 90 * down, {}};
+    for (int y = 0; y < texture.height; ++y) {
+      for (int x = 0; x < texture.width; ++x) {
+        for (int c = 0; c < 3; ++c) texture.light.push_back(light_at((x + 0.5) / across, (y + 0.5) / down, c));
+        texture.stretch_u.push_back(static_cast<float>(mm / across));
+        texture.stretch_v.push_back(static_cast<float>(mm / down));
       }
-      square.scatter(skin, method);
+    }
+    return texture;
+  };
+  for (const TextureMethod method : {TextureMethod::gaussians, TextureMethod::recursive}) {
+    Texture square = layout(1, 1);
+    square.scatter(skin, method);
+    CHECK(relative_l2(square.light, square.scattered) > 0.03);
+    for (const auto& [across, down] : {std::pair{2, 1}, {1, 2}}) {
+      Texture stretched = layout(across, down);
       stretched.scatter(skin, method);
       std::vector<float> mapped_back;
       for (int y = 0; y < square.height; ++y) {
@@ -224,9 +237,8 @@ TEST_CASE("a layout that is stretched agrees with one that is not", "[texture]")
         }
       }
       const double error = relative_l2(mapped_back, square.scattered);
-      CAPTURE(test_seed(), static_cast<int>(method), along_u, error);
+      CAPTURE(test_seed(), static_cast<int>(method), across, down, error);
       CHECK(error < 0.01);
-      CHECK(relative_l2(square.light, square.scattered) > 0.1);
     }
   }
 }
