@@ -23,18 +23,24 @@ void check_plan(const Profile& profile, const TextureDescription& frames, const 
   }
 }
 
-cl::Program build(const TexturePlan::State& state) {
+std::string build_options(const TexturePlan::State& state, const TextureDescription& images) {
   std::ostringstream options;
-  // Where there is no light the states of a recursion fade away, for which numbers below the normal ones are slow.
-  options << std::scientific << "-cl-std=CL1.2 -cl-denorms-are-zero -DLIT=0 -DV=" << state.vector_width
-          << " -DRECURSIVE=" << state.is_recursive() << " -DHAS_ALBEDO=" << state.description.albedo
-          << " -DHAS_MASK=" << state.description.mask << " -DHAS_STRETCH=" << state.description.stretch
+  options << std::scientific << "-cl-std=CL1.2 -DLIT=0 -DV=" << state.vector_width
+          << " -DRECURSIVE=" << state.is_recursive() << " -DHAS_ALBEDO=" << images.albedo
+          << " -DHAS_MASK=" << images.mask << " -DHAS_STRETCH=" << images.stretch
           << " -DSPACING=" << GaussianChain::spacing << "f -DREACH=" << GaussianChain::reach
           << "f -DNARROW=" << GaussianChain::narrow << "f -DMOST_TEXELS=" << GaussianChain::most_texels << "f";
-  return build_program(
-      state.device,
-      {"texture_prepare.cl", state.is_recursive() ? "recursion.cl" : "texture_blur.cl", "texture_finish.cl"},
-      options.str());
+  return options.str();
+}
+
+void build(TexturePlan::State& state) {
+  state.image_program =
+      build_program(state.device, {"texture_prepare.cl", "texture_finish.cl"}, build_options(state, state.description));
+  // The passes do not see albedo and mask, and are the same with and without. Where there is no light the states of a
+  // recursion fade away, for which numbers below the normal ones are slow.
+  state.pass_program =
+      build_program(state.device, {state.is_recursive() ? "recursion.cl" : "texture_blur.cl"},
+                    build_options(state, {.stretch = state.description.stretch}) + " -cl-denorms-are-zero");
 }
 
 }  // namespace
@@ -51,7 +57,7 @@ TexturePlan::TexturePlan(const Device& device, const Profile& profile, const Tex
   } else {
     state->chain = make_gaussian_chain(profile);
   }
-  with_device_errors([&] { state->program = build(*state); });
+  with_device_errors([&] { build(*state); });
   state_ = std::move(state);
 }
 

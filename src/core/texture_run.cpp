@@ -94,7 +94,7 @@ cl::Event TextureRun::launch(cl::Kernel& kernel, int columns, int rows) {
 cl::Event TextureRun::launch_blocks(cl::Kernel& kernel) { return launch(kernel, params_.blocks_x, params_.blocks_y); }
 
 void TextureRun::prepare() {
-  cl::Kernel kernel(plan_.program, "texture_prepare");
+  cl::Kernel kernel(plan_.image_program, "texture_prepare");
   set_arguments(kernel, params_,                                                                                  //
                 images_.buffer(TextureImage::light), images_.layout(TextureImage::light),                         //
                 images_.buffer(TextureImage::albedo), images_.layout(TextureImage::albedo),                       //
@@ -104,10 +104,10 @@ void TextureRun::prepare() {
                 memory_.objects, memory_.light_lit, memory_.finest, memory_.counters);
   prepare_.push_back(launch_blocks(kernel));
   if (plan_.is_recursive()) return;
-  cl::Kernel along_u(plan_.program, "texture_runs_u");
+  cl::Kernel along_u(plan_.pass_program, "texture_runs_u");
   set_arguments(along_u, params_, memory_.objects, memory_.runs[0], memory_.runs[1]);
   prepare_.push_back(launch(along_u, params_.height));
-  cl::Kernel along_v(plan_.program, "texture_runs_v");
+  cl::Kernel along_v(plan_.pass_program, "texture_runs_v");
   set_arguments(along_v, params_, memory_.objects, memory_.runs[2], memory_.runs[3]);
   prepare_.push_back(launch(along_v, parts(params_.width, plan_.vector_width)));
 }
@@ -128,7 +128,7 @@ void TextureRun::blur() {
     const cl::Buffer level = upload(context_, tables.blurs.data() + 3 * k, 3);
     for (const int down : {0, 1}) {
       const TextureImage stretch = down == 0 ? TextureImage::stretch_u : TextureImage::stretch_v;
-      cl::Kernel kernel(plan_.program, "texture_blur");
+      cl::Kernel kernel(plan_.pass_program, "texture_blur");
       set_arguments(kernel, params_, level, weights, down, images_.buffer(stretch), images_.layout(stretch),
                     memory_.runs[2 * down], memory_.runs[2 * down + 1], memory_.finest, memory_.light_lit,
                     memory_.light, memory_.between_lit, memory_.between, memory_.last_lit, memory_.last, memory_.sum,
@@ -147,7 +147,7 @@ void TextureRun::recurse() {
     const cl::Buffer poles = upload(context_, &tables[down], 1);
     const TextureImage stretch = down == 0 ? TextureImage::stretch_u : TextureImage::stretch_v;
     const int lines = down == 0 ? params_.height : params_.width;
-    cl::Kernel kernel(plan_.program, down == 0 ? "recurse_u" : "recurse_v");
+    cl::Kernel kernel(plan_.pass_program, down == 0 ? "recurse_u" : "recurse_v");
     set_arguments(kernel, params_, poles, images_.buffer(stretch), images_.layout(stretch),
                   down == 0 ? memory_.light : memory_.between, down == 0 ? memory_.between : memory_.sum,
                   lines_per_item, memory_.counters);
@@ -158,7 +158,7 @@ void TextureRun::recurse() {
 
 void TextureRun::finish() {
   const auto writes = [&](TextureImage image) { return images_.has(image) ? 1 : 0; };
-  cl::Kernel kernel(plan_.program, "texture_finish");
+  cl::Kernel kernel(plan_.image_program, "texture_finish");
   set_arguments(kernel, params_,                                                                                //
                 images_.buffer(TextureImage::light), images_.layout(TextureImage::light),                       //
                 images_.buffer(TextureImage::albedo), images_.layout(TextureImage::albedo),                     //

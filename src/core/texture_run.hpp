@@ -45,9 +45,10 @@ struct TexturePlan::State {
   Device device;
   TextureDescription description;
   TextureOptions options;
-  GaussianChain chain;  ///< of the method gaussians
-  Recursion recursion;  ///< of the method recursive
-  cl::Program program;
+  GaussianChain chain;        ///< of the method gaussians
+  Recursion recursion;        ///< of the method recursive
+  cl::Program image_program;  ///< the caller's images in and out
+  cl::Program pass_program;
   int vector_width = 1;
   mutable MemoryPool<TextureMemory> memories;
 

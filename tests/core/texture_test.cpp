@@ -167,7 +167,12 @@ TEST_CASE("of every kind of profile the poles are known to be as good as they ar
 TEST_CASE("where texels are alike a texture is scattered as a card is", "[texture]") {
   Random random(1210);
   const double mm = skin_width_mm / random.uniform(4, 9);
-  Texture texture = random_texture(random, 230, 190, mm);
+  constexpr int side = 256;
+  Texture texture{side, side, {}};
+  texture.mm_per_texel = mm;
+  for (const double value : natural_picture(side, test_seed())) {
+    texture.light.insert(texture.light.end(), 3, static_cast<float>(value));
+  }
   std::vector<float> flat(texture.light.size());
   const dermis::Frame frame{.width = texture.width,
                             .height = texture.height,
@@ -188,14 +193,13 @@ TEST_CASE("where texels are alike a texture is scattered as a card is", "[textur
     }
     return cut;
   };
-  CHECK(relative_l2(middle(flat), middle(texture.light)) > 0.1);
+  CHECK(relative_l2(middle(flat), middle(texture.light)) > 0.03);
   for (const TextureMethod method : {TextureMethod::gaussians, TextureMethod::recursive}) {
     texture.scatter(skin, method);
     const double error = relative_l2(middle(texture.scattered), middle(flat));
     CAPTURE(test_seed(), static_cast<int>(method), mm, taps_error, error);
-    // The weights of a flat cell are made for kernels up to 1/256 of an octave narrower or wider: 0.27 %. A checkered
-    // light has more of high frequencies than images have, by which errors are predicted.
-    CHECK(error < 0.0027 + (method == TextureMethod::gaussians ? 0.001 : 0.004) + 2 * taps_error);
+    // The weights of a flat cell are made for kernels up to 1/256 of an octave narrower or wider: 0.27 %.
+    CHECK(error < 0.0027 + (method == TextureMethod::gaussians ? 0.001 : 0.003) + 2 * taps_error);
   }
 }
 
@@ -346,7 +350,8 @@ TEST_CASE("what has no object or no light is skipped", "[texture][skipping]") {
     } else {
       CHECK(stats.parts == width + height);
       CHECK(stats.parts_empty == height / 2);
-      CHECK(stats.parts_unlit == height / 2 - 1);
+      CHECK(stats.parts_unlit >= height / 2 - 1);
+      CHECK(stats.parts_unlit < stats.parts - stats.parts_empty);
     }
     // As a light far off would change nothing, the same bits with all computed but for that light's own.
     const std::vector<float> skipped = texture.scattered;
