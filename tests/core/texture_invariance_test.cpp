@@ -1,4 +1,6 @@
 // What must not change a single bit of a scattered texture.
+#include <cmath>
+
 #include "catch.hpp"
 #include "core/device.hpp"
 #include "core/random_texture.hpp"
@@ -14,11 +16,14 @@ namespace {
 constexpr int width = 157;
 constexpr int height = 89;
 
+/// Which NaN comes of another one as a half is left to the device.
 std::vector<std::uint32_t> bits_of(const GuardedImage& image) {
   std::vector<std::uint32_t> bits;
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
-      for (int c = 0; c < image.channels(); ++c) bits.push_back(image.bits(x, y, c));
+      for (int c = 0; c < image.channels(); ++c) {
+        bits.push_back(std::isnan(image.get(x, y, c)) ? ~0U : image.bits(x, y, c));
+      }
     }
   }
   return bits;
