@@ -39,6 +39,10 @@ std::string_view name_of(Family family) {
       return "dermis-exact";
     case Family::dermis_disc:
       return "dermis-disc";
+    case Family::texture_gaussians:
+      return "texture-gaussians";
+    case Family::texture_recursive:
+      return "texture-recursive";
     case Family::naive:
       return "naive";
     case Family::rule_2012:
@@ -73,6 +77,8 @@ std::string_view title_of(Group group) {
       return "threads and memory";
     case Group::flat:
       return "flat, against exact convolution";
+    case Group::texture:
+      return "texture space, against exact convolution";
     case Group::start_up:
       return "start-up";
   }

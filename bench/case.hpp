@@ -13,17 +13,19 @@ namespace dermis::bench {
 
 /// Who filters.
 enum class Family {
-  dermis,            ///< the separable method
-  dermis_exact,      ///< the surface integral by brute force
-  dermis_disc,       ///< samples of it on discs
-  naive,             ///< an OpenCL kernel, one work-item per pixel and pass
-  rule_2012,         ///< the same with the rules of the 2012 shader
-  simd,              ///< C++ with vectors, constant offsets, no depth
-  simd_depth,        ///< the same with weights that fall with the difference of depth
-  opencv_separable,  ///< sepFilter2D with a dense kernel per channel
-  opencv_bilateral,  ///< bilateralFilter, 15 x 15
-  fft,               ///< the exact convolution by FFTW in float
-  start_up,          ///< the first plan of a process
+  dermis,             ///< the separable method
+  dermis_exact,       ///< the surface integral by brute force
+  dermis_disc,        ///< samples of it on discs
+  texture_gaussians,  ///< dermis on the picture as a texture, a chain of six Gaussians
+  texture_recursive,  ///< the same by recursion
+  naive,              ///< an OpenCL kernel, one work-item per pixel and pass
+  rule_2012,          ///< the same with the rules of the 2012 shader
+  simd,               ///< C++ with vectors, constant offsets, no depth
+  simd_depth,         ///< the same with weights that fall with the difference of depth
+  opencv_separable,   ///< sepFilter2D with a dense kernel per channel
+  opencv_bilateral,   ///< bilateralFilter, 15 x 15
+  fft,                ///< the exact convolution by FFTW in float
+  start_up,           ///< the first plan of a process
 };
 
 std::string_view name_of(Family family);
@@ -32,9 +34,9 @@ std::string_view name_of(Family family);
 enum class Memory { planar_f32, interleaved_f16 };
 
 /// The part of the table that a case stands in.
-enum class Group { methods, coverage, width, pixels, threads, flat, start_up };
+enum class Group { methods, coverage, width, pixels, threads, flat, texture, start_up };
 inline constexpr Group all_groups[] = {Group::methods, Group::coverage, Group::width,   Group::pixels,
-                                       Group::threads, Group::flat,     Group::start_up};
+                                       Group::threads, Group::flat,     Group::texture, Group::start_up};
 
 std::string_view title_of(Group group);
 

@@ -31,6 +31,8 @@ double loads_of(const Case& what) {
     case Family::dermis_disc:
       return 4.0 * what.disc.samples;
     case Family::dermis_exact:
+    case Family::texture_gaussians:
+    case Family::texture_recursive:
     case Family::fft:
       return 0;
   }
@@ -44,6 +46,9 @@ std::unique_ptr<Opponent> make_opponent(const Case& what, const Scene& scene, co
     case Family::dermis_disc:
     case Family::start_up:
       return make_dermis(what, scene, device);
+    case Family::texture_gaussians:
+    case Family::texture_recursive:
+      return make_texture(what, scene, device);
     case Family::naive:
       return make_naive(what, scene, device);
     case Family::rule_2012:

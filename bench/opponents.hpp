@@ -19,6 +19,7 @@ struct PassTaps {
 };
 
 std::unique_ptr<Opponent> make_dermis(const Case& what, const Scene& scene, const Device& device);
+std::unique_ptr<Opponent> make_texture(const Case& what, const Scene& scene, const Device& device);
 std::unique_ptr<Opponent> make_naive(const Case& what, const Scene& scene, const Device& device);
 std::unique_ptr<Opponent> make_rule_2012(const Case& what, const Scene& scene, const Device& device);
 std::unique_ptr<Opponent> make_simd(const Case& what, const Scene& scene);

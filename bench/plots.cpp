@@ -26,6 +26,10 @@ struct Look {
 
 Look look_of(const Case& what) {
   switch (what.family) {
+    case Family::texture_gaussians:
+      return {"dermis, texture, six Gaussians", "#a3a32a", 8};
+    case Family::texture_recursive:
+      return {"dermis, texture, recursion", "#d4582a", 10};
     case Family::naive:
       return {"naive OpenCL", "#b5651d", 9};
     case Family::rule_2012:
@@ -148,7 +152,7 @@ Chart cost_width(const Measurement& measurement, Geometry geometry) {
            row.what.family != Family::opencv_bilateral;
   };
   return cost(measurement, geometry == Geometry::flat ? "flat, 1920x1080" : "three spheres, 1920x1080",
-              "standard deviation of the widest Gaussian, px", "set xtics (8,16,32,64)\nset xrange [7:73]", belongs,
+              "standard deviation of the widest Gaussian, px", "set xtics (8,16,32,64,120)\nset xrange [7:137]", belongs,
               [](const Row& row) { return row.what.scene.kernel_px; });
 }
 

@@ -107,6 +107,14 @@ void add_flat(std::vector<Case>& cases) {
   for (const int count : {7, 17, 25}) cases.push_back(opponent(Family::simd_depth, Group::flat, flat_scene, count));
 }
 
+void add_texture(std::vector<Case>& cases) {
+  for (const int kernel_px : {8, 16, 32, 64, 120}) {
+    for (const Family family : {Family::texture_gaussians, Family::texture_recursive}) {
+      cases.push_back(opponent(family, Group::texture, wide(flat_scene, kernel_px)));
+    }
+  }
+}
+
 void add_start_up(std::vector<Case>& cases) {
   for (const bool filled : {false, true}) {
     cases.push_back({.family = Family::start_up, .group = Group::start_up, .cache_is_filled = filled});
@@ -149,6 +157,7 @@ std::vector<Case> default_cases() {
   add_methods(cases);
   add_axes(cases);
   add_flat(cases);
+  add_texture(cases);
   add_start_up(cases);
   return cases;
 }

@@ -285,4 +285,54 @@ struct DiscCounts {
   unsigned int seed;
 };
 
+// Texture space: texels of a block, the unit of skipping in blurs. A block is whole vectors wide.
+#define BLOCK_WIDTH 64
+#define BLOCK_HEIGHT 16
+
+// Lanes of the states of a recursion: 8 times the pole pair, plus 4 times the function, plus the channel.
+#define STATES 16
+
+// Counters of a run on a texture.
+#define COUNTER_EMPTY_TEXELS 0
+#define COUNTER_EMPTY_PARTS 1
+#define COUNTER_UNLIT_PARTS 2
+#define COUNTER_FINEST 3  // the smallest stretch, as the bits of a float above 0, which order as it does
+#define TEXTURE_COUNTERS 4
+
+// One texture.
+struct TextureParams {
+  int width;
+  int height;
+  int stride;  // of planes, texels
+  int blocks_x;
+  int blocks_y;
+  float mm_per_texel;
+  float albedo_mix;
+};
+
+// One blur of a channel: see GaussianChain. Where all texels are of one size, the host knows what it consists of.
+struct BlurParams {
+  float total_deviation_mm;  // of the Gaussian
+  float variance_mm2;        // of the blur from the last one
+  float deviation_mm;
+  float weight;  // of the level in the result
+  int is_first;
+  int from_light;
+  int step;  // texels
+  int taps;  // on each side
+  int first_weight;
+};
+
+// The pole pairs of one pass: see PolePair and recursion.cl.
+struct PoleParams {
+  float rate[STATES];
+  float other_rate[STATES];
+  float turn[STATES];
+  float share[STATES];
+  float other_share[STATES];
+  // Where all texels are of one size: over half a texel, and over a whole one.
+  float half_texel[3][STATES];
+  float texel[3][STATES];
+};
+
 #endif

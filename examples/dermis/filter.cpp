@@ -24,6 +24,7 @@
 #include "design_arguments.hpp"
 #include "filter_arguments.hpp"
 #include "filter_session.hpp"
+#include "filter_texture.hpp"
 #include "loaded_frame.hpp"
 #include "output_file.hpp"
 #include "picture_png.hpp"
@@ -332,6 +333,7 @@ void filter_picture(const FilterArguments& arguments, std::optional<FilterSessio
 }
 
 int run_filter(const FilterArguments& arguments) {
+  if (is_texture(arguments.texture)) return filter_textures(arguments);
   options_of(arguments);  // what is wrong with all of them is said before any is written
   const std::vector<FilterArguments> pictures = one_by_one(arguments);
   std::optional<FilterSession> session;

@@ -25,8 +25,9 @@ void add_method_arguments(CLI::App& app, FilterArguments& arguments) {
   app.add_option(
          "--method", arguments.method,
          "separable; exact: the slow integral over the surface; disc: samples of it, with noise, on a disc about "
-         "each pixel (Golubev 2018)")
-      ->check(one_of({"separable", "exact", "disc"}))
+         "each pixel (Golubev 2018); in texture space gaussians, each blur made from the last, or recursive, in a time "
+         "that does not depend on their width")
+      ->check(one_of({"separable", "exact", "disc", "gaussians", "recursive"}))
       ->default_str("separable");
   add_quality_arguments(app, arguments.quality);
   add_design_arguments(app, arguments.design);
@@ -160,6 +161,7 @@ void add_filter_arguments(CLI::App& app, FilterArguments& arguments) {
   add_output_arguments(app, arguments);
   add_material_arguments(app, arguments.materials);
   add_cryptomatte_argument(app, arguments.cryptomatte);
+  add_texture_arguments(app, arguments.texture);
   add_method_arguments(app, arguments);
   add_bad_pixels_argument(app, arguments.bad_pixels);
   add_device_arguments(app, arguments);
@@ -218,6 +220,7 @@ bool is_automatic(const FilterArguments& arguments) {
 }
 
 Options options_of(const FilterArguments& arguments) {
+  check_space_of_screen(arguments.texture, arguments.method);
   if (!arguments.picture.mm_per_unit)
     throw Error(ErrorCode::usage, "--mm-per-unit", "nothing",
                 "millimetres per scene unit (no default, since it decides how far light spreads)");

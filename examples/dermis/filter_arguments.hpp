@@ -11,6 +11,7 @@
 #include "material_arguments.hpp"
 #include "picture_arguments.hpp"
 #include "quality_arguments.hpp"
+#include "texture_arguments.hpp"
 
 namespace dermis::program {
 
@@ -37,6 +38,7 @@ struct FilterArguments {
   std::string bad_pixels = "keep";
   std::string lighting = "raw";
   std::string shear = "auto";
+  TextureArguments texture;
   Options options;  ///< but for what stands above
 };
 

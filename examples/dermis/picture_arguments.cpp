@@ -12,7 +12,8 @@ void add_picture_arguments(CLI::App& app, PictureArguments& arguments) {
 void add_reading_arguments(CLI::App& app, PictureArguments& arguments) {
   app.add_option(
          "--role", arguments.roles,
-         "take light, albedo, depth, position, normal, material, mask, matte, specular or beauty from these channels "
+         "take light, albedo, depth, position, normal, material, mask, matte, specular, beauty, stretch_u or stretch_v "
+         "from these channels "
          "(1 or 3 names with commas, or one prefix; + adds); repeatable")
       ->allow_extra_args(false)
       ->type_name("ROLE=CHANNELS");

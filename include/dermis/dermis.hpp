@@ -7,4 +7,5 @@
 #include "dermis/plan.hpp"
 #include "dermis/profile.hpp"
 #include "dermis/taps.hpp"
+#include "dermis/texture.hpp"
 #include "dermis/version.hpp"

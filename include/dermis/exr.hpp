@@ -81,9 +81,23 @@ class Picture {
 };
 
 /// What a channel is for.
-enum class Role { light, albedo, depth, position, normal, material, mask, matte, specular, beauty };
-inline constexpr std::array all_roles = {Role::light,    Role::albedo, Role::depth, Role::position, Role::normal,
-                                         Role::material, Role::mask,   Role::matte, Role::specular, Role::beauty};
+enum class Role {
+  light,
+  albedo,
+  depth,
+  position,
+  normal,
+  material,
+  mask,
+  matte,
+  specular,
+  beauty,
+  stretch_u,
+  stretch_v
+};
+inline constexpr std::array all_roles = {Role::light,    Role::albedo,   Role::depth,     Role::position,
+                                         Role::normal,   Role::material, Role::mask,      Role::matte,
+                                         Role::specular, Role::beauty,   Role::stretch_u, Role::stretch_v};
 
 std::string_view name_of(Role role);
 

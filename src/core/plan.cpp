@@ -153,26 +153,6 @@ double milliseconds(const std::vector<cl::Event>& events) {
   return sum;
 }
 
-/// Takes memory from the pool, and puts it back when the queue is done with it.
-class BorrowedMemory {
- public:
-  BorrowedMemory(RunMemoryPool& pool, const cl::Context& context, const cl::CommandQueue& queue, const RunSizes& sizes)
-      : pool_(pool), queue_(queue), memory_(pool.take(context, sizes)) {}
-  ~BorrowedMemory() {
-    clFinish(queue_());
-    pool_.give_back(std::move(memory_));
-  }
-  BorrowedMemory(const BorrowedMemory&) = delete;
-  BorrowedMemory& operator=(const BorrowedMemory&) = delete;
-
-  RunMemory& operator*() const { return *memory_; }
-
- private:
-  RunMemoryPool& pool_;
-  const cl::CommandQueue& queue_;
-  std::unique_ptr<RunMemory> memory_;
-};
-
 /// Runs a plan on one black pixel. PoCL compiles a kernel when it is first launched, for the size of its
 /// work-groups: here instead of in the first frame.
 void run_on_black(const Plan& plan, const FrameDescription& frames) {
@@ -280,7 +260,8 @@ Stats Plan::run(const Frame& frame, Reuse::State* reuse, const Progress& progres
     const cl::CommandQueue queue(context, cl::Device(state_->device.id(), true), CL_QUEUE_PROFILING_ENABLE);
     const BoundImages bound(context, frame, images);
     // Whatever ends the run, the device must be done with the caller's memory first.
-    const BorrowedMemory memory(state_->memories, context, queue, run_sizes(*state_, frame.width, frame.height));
+    const BorrowedMemory<RunMemory> memory(state_->memories, context, queue,
+                                           run_sizes(*state_, frame.width, frame.height));
     Passes passes(*state_, frame, bound, *memory, queue, {}, reuse);
     Stats stats;
     stats.prepare_ms = milliseconds_since_start();
@@ -314,7 +295,7 @@ Stats Plan::run(const Frame& frame, Reuse::State* reuse, const Progress& progres
 Event Plan::enqueue(const Frame& frame, cl_command_queue queue, std::span<const cl_event> wait_for) const {
   if (queue == nullptr) throw Error(ErrorCode::usage, "queue", "nullptr", "an OpenCL command queue");
   const auto images = check_frame(frame, state_->description, state_->options);
-  for (const FrameImage& image : images) {
+  for (const CallerImage& image : images) {
     if (image.host != nullptr) throw Error(ErrorCode::usage, image.name, "host memory", "a buffer, to enqueue");
   }
   if (state_->options.bad_pixels == BadPixels::error) {

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "core/device.hpp"
+#include "core/memory_pool.hpp"
 #include "core/run_memory.hpp"
 #include "dermis/plan.hpp"
 
@@ -35,7 +36,7 @@ struct Plan::State {
   bool is_sheared = false;       ///< taps of the vertical pass lie along the shear of the surface
   bool item_is_pixel = false;    ///< a work-item computes one pixel (GPUs), else runs of pixels
   bool tiled = false;            ///< the passes run tile by tile
-  mutable RunMemoryPool memories;
+  mutable MemoryPool<RunMemory> memories;
 
   explicit State(const Device& its_device) : device(its_device), number(next_number()) {}
 

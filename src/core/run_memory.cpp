@@ -120,22 +120,4 @@ void RunMemory::need_held(const cl::Context& context) {
   if (held() == kinds()) held = cl::Buffer(context, CL_MEM_READ_WRITE, sizes.held_bytes());
 }
 
-std::unique_ptr<RunMemory> RunMemoryPool::take(const cl::Context& context, const RunSizes& sizes) {
-  {
-    const std::scoped_lock lock(mutex_);
-    std::erase_if(free_, [&](const auto& memory) { return !(memory->sizes == sizes); });
-    if (!free_.empty()) {
-      auto memory = std::move(free_.back());
-      free_.pop_back();
-      return memory;
-    }
-  }
-  return std::make_unique<RunMemory>(context, sizes);
-}
-
-void RunMemoryPool::give_back(std::unique_ptr<RunMemory> memory) {
-  const std::scoped_lock lock(mutex_);
-  free_.push_back(std::move(memory));
-}
-
 }  // namespace dermis

@@ -2,9 +2,6 @@
 #pragma once
 
 #include <cstddef>
-#include <memory>
-#include <mutex>
-#include <vector>
 
 #include "core/opencl.hpp"
 #include "core/params.hpp"
@@ -58,18 +55,6 @@ struct RunMemory {
 
   RunMemory(const cl::Context& context, const RunSizes& wanted);
   void need_held(const cl::Context& context);
-};
-
-/// Memories that are not in use, for several threads.
-class RunMemoryPool {
- public:
-  /// One for these sizes, new if there is none; those for other sizes are given up.
-  std::unique_ptr<RunMemory> take(const cl::Context& context, const RunSizes& sizes);
-  void give_back(std::unique_ptr<RunMemory> memory);
-
- private:
-  std::mutex mutex_;
-  std::vector<std::unique_ptr<RunMemory>> free_;
 };
 
 }  // namespace dermis

@@ -164,8 +164,9 @@ std::string chosen_layer(const Catalogue& catalogue, std::string_view wanted) {
 }  // namespace
 
 std::string_view name_of(Role role) {
-  constexpr std::array<std::string_view, all_roles.size()> names = {
-      "light", "albedo", "depth", "position", "normal", "material", "mask", "matte", "specular", "beauty"};
+  constexpr std::array<std::string_view, all_roles.size()> names = {"light",    "albedo",   "depth",     "position",
+                                                                    "normal",   "material", "mask",      "matte",
+                                                                    "specular", "beauty",   "stretch_u", "stretch_v"};
   return names[static_cast<std::size_t>(role)];
 }
 

@@ -2,11 +2,10 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <numeric>
 
 #include "taps/correction_basis.hpp"
-#include "taps/natural_images.hpp"
+#include "taps/plane_spectrum.hpp"
 #include "taps/product_fit.hpp"
 #include "taps/separable_model.hpp"
 
@@ -17,13 +16,9 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// How many times finer than a pixel the waves are that models heed, so that they serve smaller pixels too.
-constexpr double finest_waves = 6;
-
 /// The profile's spectrum on pairs of frequencies.
 struct SpectralFit {
-  double pixel_mm;
-  Frequencies frequencies;
+  PlaneSpectrum plane;
   CorrectionBasis basis;
   ProductFit fit;
 
@@ -32,33 +27,20 @@ struct SpectralFit {
   VectorXd marginal() const { return fit.truth.col(0); }  // the spectrum of a is a slice of that of R
 };
 
-SpectralFit::SpectralFit(const Profile& profile, int channel)
-    : pixel_mm(fitting_pixel_mm(profile, channel)),
-      frequencies(coarse_frequencies(finest_waves * std::numbers::pi)),
-      basis(profile, channel) {
-  const VectorXd& u = frequencies.u;
-  const int n = frequencies.size();
-  fit.truth.resize(n, n);
-  fit.weight.resize(n, n);
-  for (int i = 0; i < n; ++i) {
-    for (int j = i; j < n; ++j) {
-      const double both = i == j ? 1 : 2;  // (i, j) and (j, i)
-      fit.truth(i, j) = profile.spectrum(channel, std::hypot(u[i], u[j]) / pixel_mm);
-      fit.weight(i, j) = std::sqrt(both * natural_power(u[i], u[j]) * frequencies.weight[i] * frequencies.weight[j]);
-      fit.truth(j, i) = fit.truth(i, j);
-      fit.weight(j, i) = fit.weight(i, j);
-    }
-  }
-  fit.basis = basis.spectra(u / pixel_mm);
+SpectralFit::SpectralFit(const Profile& profile, int channel) : plane(profile, channel), basis(profile, channel) {
+  fit.truth = plane.truth;
+  fit.weight = plane.weight;
+  fit.basis = basis.spectra(plane.omega_per_mm());
 }
 
 /// The leading eigenfunctions of what the marginals' product misses, as starts for corrections. Frequencies count as
 /// 1 / u, which is what the spectrum of images makes of one axis.
 void add_corrections(SpectralFit& spectral, int count) {
   ProductFit& fit = spectral.fit;
-  const int n = spectral.frequencies.size() - 1;  // without 0, where nothing is missing
+  const int n = spectral.plane.frequencies.size() - 1;  // without 0, where nothing is missing
   const VectorXd a = spectral.marginal();
-  const VectorXd root = (spectral.frequencies.weight.tail(n).array() / spectral.frequencies.u.tail(n).array()).sqrt();
+  const VectorXd root =
+      (spectral.plane.frequencies.weight.tail(n).array() / spectral.plane.frequencies.u.tail(n).array()).sqrt();
   const MatrixXd missing = (fit.truth - a * a.transpose()).bottomRightCorner(n, n);
   const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(root.asDiagonal() * missing * root.asDiagonal());
   std::vector<int> order(n);
@@ -85,7 +67,7 @@ void add_floor(SpectralFit& spectral, const Profile& profile, int channel) {
   constexpr int n = 32;
   constexpr double price = 34;
   const double far_mm = profile.half_width(channel, 0.999) * 1.5;
-  const double near_mm = spectral.pixel_mm / 40;  // the cross that is taken away lies along the axes
+  const double near_mm = spectral.plane.pixel_mm / 40;  // the cross that is taken away lies along the axes
   VectorXd x_mm(n);
   for (int i = 0; i < n; ++i) x_mm[i] = near_mm * std::pow(far_mm / near_mm, static_cast<double>(i) / (n - 1));
   const double step = std::log(far_mm / near_mm) / (n - 1);

@@ -90,12 +90,40 @@ ExactKernel::ExactKernel(const dermis::Profile& profile, double pixel_mm, int si
   }
 }
 
-double ExactKernel::rel_l2(const dermis::TapSet& taps, const NaturalPictures& pictures) const {
+double ExactKernel::rel_l2(const std::array<std::vector<double>, 3>& kernels, const NaturalPictures& pictures) const {
   const int count = side_px_ / 2 + 1;
+  std::array<std::vector<double>, 3> spectra;
+  for (int c = 0; c < 3; ++c) {
+    Spectrum spectrum(kernels[c].begin(), kernels[c].end());
+    transform(spectrum, side_px_, FFTW_FORWARD);
+    for (int y = 0; y < count; ++y) {
+      for (int x = 0; x < count; ++x) {
+        spectra[c].push_back(spectrum[static_cast<std::size_t>(y) * side_px_ + x].real());
+      }
+    }
+  }
+  return distance(spectra, pictures);
+}
+
+double ExactKernel::distance(const std::array<std::vector<double>, 3>& spectra, const NaturalPictures& pictures) const {
   double errors = 0;
   double truths = 0;
   for (int c = 0; c < 3; ++c) {
-    std::vector<double> approximation(static_cast<std::size_t>(count) * count);
+    for (std::size_t i = 0; i < spectra[c].size(); ++i) {
+      const double error = spectra[c][i] - spectrum_[c][i];
+      errors += pictures.power()[i] * error * error;
+      truths += pictures.power()[i] * spectrum_[c][i] * spectrum_[c][i];
+    }
+  }
+  return std::sqrt(errors / truths);
+}
+
+double ExactKernel::rel_l2(const dermis::TapSet& taps, const NaturalPictures& pictures) const {
+  const int count = side_px_ / 2 + 1;
+  std::array<std::vector<double>, 3> spectra;
+  for (int c = 0; c < 3; ++c) {
+    std::vector<double>& approximation = spectra[c];
+    approximation.resize(static_cast<std::size_t>(count) * count);
     for (const dermis::TapTerm& term : taps.terms) {
       std::vector<double> response(count);
       for (int k = 0; k < count; ++k) {
@@ -114,11 +142,6 @@ double ExactKernel::rel_l2(const dermis::TapSet& taps, const NaturalPictures& pi
         }
       }
     }
-    for (std::size_t i = 0; i < approximation.size(); ++i) {
-      const double error = approximation[i] - spectrum_[c][i];
-      errors += pictures.power()[i] * error * error;
-      truths += pictures.power()[i] * spectrum_[c][i] * spectrum_[c][i];
-    }
   }
-  return std::sqrt(errors / truths);
+  return distance(spectra, pictures);
 }

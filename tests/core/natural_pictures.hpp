@@ -35,8 +35,12 @@ class ExactKernel {
 
   /// The relative L2 distance, all channels together, of the taps' result from the exact one.
   double rel_l2(const dermis::TapSet& taps, const NaturalPictures& pictures) const;
+  /// That of the convolution with kernels, side_px a side, that are even about the pixel at 0 and wrap around.
+  double rel_l2(const std::array<std::vector<double>, 3>& kernels, const NaturalPictures& pictures) const;
 
  private:
+  double distance(const std::array<std::vector<double>, 3>& spectra, const NaturalPictures& pictures) const;
+
   int side_px_;
   std::array<std::vector<double>, 3> spectrum_;  ///< the quadrant 0..side/2
 };
