@@ -55,7 +55,20 @@ Layout unpacked(Layout layout, int width, int channels) {
   return layout;
 }
 
-Picture read(const Image& image, int width, int height, int channels, std::string_view name) {
+void check(const Frame& frame) {
+  if (frame.width <= 0 || frame.height <= 0) {
+    throw Error(ErrorCode::usage, "frame size", std::to_string(frame.width) + " x " + std::to_string(frame.height),
+                "at least 1 x 1");
+  }
+  if (!frame.light) throw Error(ErrorCode::role_missing, "frame.light", "no image", "RGB light");
+  if (!frame.depth && frame.camera.projection == Camera::Projection::perspective) {
+    throw Error(ErrorCode::role_missing, "frame.depth", "no image", "depth, or an orthographic camera");
+  }
+}
+
+}  // namespace
+
+Picture read_image(const Image& image, int width, int height, int channels, std::string_view name) {
   if (!image) return {};
   if (image.host == nullptr) throw Error(ErrorCode::usage, name, "a device buffer", "host memory");
   const Layout layout = unpacked(image.layout, width, channels);
@@ -72,23 +85,10 @@ Picture read(const Image& image, int width, int height, int channels, std::strin
   return picture;
 }
 
-void check(const Frame& frame) {
-  if (frame.width <= 0 || frame.height <= 0) {
-    throw Error(ErrorCode::usage, "frame size", std::to_string(frame.width) + " x " + std::to_string(frame.height),
-                "at least 1 x 1");
-  }
-  if (!frame.light) throw Error(ErrorCode::role_missing, "frame.light", "no image", "RGB light");
-  if (!frame.depth && frame.camera.projection == Camera::Projection::perspective) {
-    throw Error(ErrorCode::role_missing, "frame.depth", "no image", "depth, or an orthographic camera");
-  }
-}
-
-}  // namespace
-
 FrameImages read_images(const Frame& frame) {
   check(frame);
   const auto load = [&](const Image& image, int channels, std::string_view name) {
-    return read(image, frame.width, frame.height, channels, name);
+    return read_image(image, frame.width, frame.height, channels, name);
   };
   return {.light = load(frame.light, 3, "frame.light"),
           .albedo = load(frame.albedo, 3, "frame.albedo"),
