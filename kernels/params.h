@@ -263,7 +263,7 @@ struct LightParams {
 };
 
 // Intervals of the table of what a highlight reflects.
-#define RHO_NODES 256
+#define RHO_NODES 1024
 
 // One rotation of the axes, times 4096: the offset (o, 0) of the horizontal pass becomes (o * cosine, o * sine_x), the
 // offset (0, o) of the vertical pass (o * sine_y, o * cosine).

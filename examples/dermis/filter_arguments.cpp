@@ -125,6 +125,7 @@ void add_filter_arguments(CLI::App& app, FilterArguments& arguments) {
   add_output_arguments(app, arguments);
   add_material_arguments(app, arguments.materials);
   add_method_arguments(app, arguments);
+  add_translucency_arguments(app, arguments.translucency);
   add_bad_pixels_argument(app, arguments.bad_pixels);
   add_device_arguments(app, arguments);
 }
@@ -190,6 +191,7 @@ Options options_of(const FilterArguments& arguments) {
   if (!arguments.tile_map.empty() && arguments.stats_json == "-")
     throw Error(ErrorCode::usage, "--stats-json", "- together with --tile-map", "only one of them on standard output");
   check_quality(arguments);
+  check_translucency(arguments.translucency);
   Options options = arguments.options;
   options.taps = design_of(arguments.design, is_automatic(arguments) ? tolerance_of(arguments.quality) : 0);
   options.method = is_exact(arguments) ? Method::exact : Method::separable;
@@ -223,6 +225,7 @@ std::string command_text(const FilterArguments& arguments) {
   }
   add("--lighting", arguments.lighting);
   add("--albedo-mix", arguments.options.albedo_mix);
+  text += command_text(arguments.translucency);
   add("--bad-pixels", arguments.bad_pixels);
   if (picture.camera.fov_deg) add("--fov", *picture.camera.fov_deg);
   if (picture.camera.focal_px) add("--focal-px", *picture.camera.focal_px);

@@ -10,6 +10,7 @@
 #include "material_arguments.hpp"
 #include "picture_arguments.hpp"
 #include "quality_arguments.hpp"
+#include "translucency_step.hpp"
 
 namespace dermis::program {
 
@@ -29,6 +30,7 @@ struct FilterArguments {
   std::string method;  ///< empty: what the quality asks for
   QualityArguments quality;
   DesignArguments design{.defaults = Options{}.taps, .may_be_automatic = true};
+  TranslucencyArguments translucency;
   std::string bad_pixels = "keep";
   std::string lighting = "raw";
   std::string shear = "auto";

@@ -81,9 +81,9 @@ class Picture {
 };
 
 /// What a channel is for.
-enum class Role { light, albedo, depth, position, normal, material, mask, specular, beauty };
+enum class Role { light, albedo, depth, position, normal, material, mask, specular, beauty, thickness };
 inline constexpr std::array all_roles = {Role::light,    Role::albedo, Role::depth,    Role::position, Role::normal,
-                                         Role::material, Role::mask,   Role::specular, Role::beauty};
+                                         Role::material, Role::mask,   Role::specular, Role::beauty,   Role::thickness};
 
 std::string_view name_of(Role role);
 
@@ -126,6 +126,8 @@ struct FoundCamera {
   Camera camera;              ///< in pixels of the data window
   std::string source;         ///< "--fov", "--focal-px", "--px-per-unit" or "position and depth"
   double residual_units = 0;  ///< largest distance of a recovered point from its position, if recovered
+  /// World space, if recovered: the eye, scene units, or the direction in which an orthographic camera looks.
+  std::optional<std::array<double, 3>> eye = {};
 };
 
 /// The camera of a picture: from the hint, else by linear least squares from position and depth: P = C + Z x u + Z y v

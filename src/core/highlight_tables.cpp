@@ -19,15 +19,18 @@ constexpr double widest = 6;  ///< of tan a / m: e^-36 of the normals of the dis
 double square(double x) { return x * x; }
 
 /// Schlick 1994.
-double fresnel(double reflectance, double cosine) { return reflectance + (1 - reflectance) * std::pow(1 - cosine, 5); }
+double fresnel(double reflectance, double cosine) {
+  return reflectance + (1 - reflectance) * (1 - cosine) * square(square(1 - cosine));
+}
 
 /// The share that one lobe of weight 1 reflects of light at the angle theta. With half vectors of Beckmann's
 /// distribution, dP = 2 t e^(-t^2) dt dphi / 2 pi for tan a = m t, and dl = 4 (l.h) dh,
 ///
 ///     rho = integral of F(v.h) max(0, 2 - cos theta / (v.h cos a)) dP
 ///
-/// where v.h = cos a cos theta + sin a sin theta cos phi. The integrand is 0 for phi above some angle; there it bends,
-/// and where that angle becomes pi or 0, at a = pi/4 -+ theta/2.
+/// where v.h = cos a cos theta + sin a sin theta cos phi. The integrand is 0 for phi beyond some angle, to which it
+/// falls steeply at grazing angles: phi = that (1 - x^4). It bends where that angle becomes pi or 0, at a = pi/4 -+
+/// theta/2.
 double reflected_share(double roughness, double reflectance, double cos_theta) {
   const double sin_theta = std::sqrt(1 - square(cos_theta));
   const auto ring = [&](double t) {
@@ -35,12 +38,12 @@ double reflected_share(double roughness, double reflectance, double cos_theta) {
     const double sin_a = roughness * t * cos_a;
     const double bound = cos_theta * (1 / (2 * cos_a) - cos_a);
     const double last = std::acos(std::clamp(bound / std::max(sin_a * sin_theta, 1e-300), -1.0, 1.0));
-    const auto along = [&](double phi) {
-      const double v_h = cos_a * cos_theta + sin_a * sin_theta * std::cos(phi);
+    const auto along = [&](double x) {
+      const double v_h = cos_a * cos_theta + sin_a * sin_theta * std::cos(last * (1 - square(square(x))));
       if (!(v_h > 0)) return 0.0;
-      return fresnel(reflectance, v_h) * std::max(0.0, 2 - cos_theta / (v_h * cos_a));
+      return 4 * x * square(x) * fresnel(reflectance, v_h) * std::max(0.0, 2 - cos_theta / (v_h * cos_a));
     };
-    return 2 * t * std::exp(-t * t) * panel_integral<24>(0, last, along) / pi;
+    return 2 * t * std::exp(-t * t) * last * panel_integral<24>(0, 1, along) / pi;
   };
   const double theta = std::acos(cos_theta);
   double sum = 0;

@@ -88,7 +88,7 @@ FoundCamera recovered(const Picture& picture, const Roles& roles) {
   const bool is_perspective =
       perspective.fit && (!orthographic.fit || perspective.fit->rms_px <= orthographic.fit->rms_px);
   const CameraFit& fit = is_perspective ? *perspective.fit : *orthographic.fit;
-  return {.camera = fit.camera, .source = "position and depth", .residual_units = fit.residual_units};
+  return {.camera = fit.camera, .source = "position and depth", .residual_units = fit.residual_units, .eye = fit.eye};
 }
 
 }  // namespace

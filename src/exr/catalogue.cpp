@@ -14,7 +14,9 @@ constexpr std::array<std::string_view, 6> single_endings = {"Z", "X", "V", "Y", 
 
 }  // namespace
 
-std::size_t values_of(Role role) { return role == Role::depth || role == Role::material || role == Role::mask ? 1 : 3; }
+std::size_t values_of(Role role) {
+  return role == Role::depth || role == Role::material || role == Role::mask || role == Role::thickness ? 1 : 3;
+}
 
 std::string with_dot(std::string_view prefix, std::string_view ending) {
   std::string out(prefix);

@@ -103,10 +103,10 @@ double LightSource::mean_at(const Place& place, double x, double y, double sign,
   const auto [top, bottom] = range(y, map_.height);
   double sum = 0;
   double area = 0;
-  for (int row = 0; row < map_.height; ++row) {
+  for (int row = static_cast<int>(top); row < std::min<double>(map_.height, bottom); ++row) {
     const double high = std::min(row + 1.0, bottom) - std::max(double(row), top);
     if (!(high > 0)) continue;
-    for (int column = 0; column < map_.width; ++column) {
+    for (int column = static_cast<int>(left); column < std::min<double>(map_.width, right); ++column) {
       const double wide = std::min(column + 1.0, right) - std::max(double(column), left);
       if (!(wide > 0)) continue;
       const Bounded shown = shown_depth(map_(column, row));

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "dermis/oracle/lighting.hpp"
+#include "oracle/adaptive_integral.hpp"
 #include "oracle/frame_images.hpp"
 #include "oracle/gauss_legendre.hpp"
 #include "oracle/lit_point.hpp"
@@ -45,32 +46,39 @@ double highlight(const ShadingOptions& options, const Vec3& normal, const Vec3& 
   return fresnel * beckmann(options.lobes, tangent) / square * (1 + off);
 }
 
-/// The highlight from one direction of view under light from a whole hemisphere, about the half vector that the lobe
-/// prefers: over its angle a from the normal and its azimuth, in which the hemisphere of lights is dl = 4 (l.h) dh.
-double reflected_by_lobe(const SpecularLobe& lobe, double reflectance, double cosine, int points) {
-  const std::vector<QuadraturePoint> rule = gauss_legendre(points);
+/// What one lobe shows of light from a whole hemisphere: over half vectors, at an angle a to the normal and turned
+/// about it, in which the hemisphere of lights is dl = 4 (v.h) dh. Lights are above the surface up to a turn that
+/// bisection finds.
+double reflected_by_lobe(const SpecularLobe& lobe, double reflectance, double cosine) {
+  static const std::vector<QuadraturePoint> rule = gauss_legendre(32);
   const Vec3 to_viewer{std::sqrt(1 - cosine * cosine), 0, cosine};
-  const double most = std::min(std::atan(6 * lobe.roughness), pi / 2);
-  double all = 0;
-  constexpr int panels = 8;
-  for (int panel = 0; panel < panels; ++panel) {
-    for (const QuadraturePoint& in_angle : rule) {
-      const double a = most * (panel + 0.5 + in_angle.position) / panels;
-      for (int half_turn = 0; half_turn < panels; ++half_turn) {
-        for (const QuadraturePoint& in_turn : rule) {
-          const double turn = pi * (half_turn + 0.5 + in_turn.position) / panels;
-          const Vec3 h{std::sin(a) * std::cos(turn), std::sin(a) * std::sin(turn), std::cos(a)};
-          const double v_h = dot(to_viewer, h);
-          const Vec3 to_light = difference(scaled(h, 2 * v_h), to_viewer);
-          if (v_h <= 0 || to_light[2] <= 0) continue;
-          const double brdf = schlick(reflectance, v_h) * beckmann({lobe}, std::tan(a)) / (4 * v_h * v_h) / pi;
-          const double area = std::sin(a) * (most / panels) * (pi / panels) * in_angle.weight * in_turn.weight;
-          all += 2 * brdf * to_light[2] * 4 * v_h * area;
-        }
-      }
+  const auto half_vector = [](double a, double turn) {
+    return Vec3{std::sin(a) * std::cos(turn), std::sin(a) * std::sin(turn), std::cos(a)};
+  };
+  const auto light_of = [&](const Vec3& h) { return difference(scaled(h, 2 * dot(to_viewer, h)), to_viewer); };
+  const auto is_above = [&](double a, double turn) {
+    const Vec3 h = half_vector(a, turn);
+    return dot(to_viewer, h) > 0 && light_of(h)[2] > 0;
+  };
+  const auto ring = [&](double a) {
+    if (!is_above(a, 0)) return 0.0;
+    double last = pi;
+    if (!is_above(a, pi)) {
+      double first = 0;
+      for (int i = 0; i < 40; ++i) (is_above(a, (first + last) / 2) ? first : last) = (first + last) / 2;
     }
-  }
-  return all;
+    double sum = 0;
+    for (const QuadraturePoint& point : rule) {
+      // Dense towards the last turn, where the brdf is steep at grazing angles.
+      const double x = 0.5 + point.position;
+      const Vec3 h = half_vector(a, last * (1 - x * x * x));
+      const double v_h = dot(to_viewer, h);
+      const double brdf = schlick(reflectance, v_h) * beckmann({lobe}, std::tan(a)) / (4 * v_h * v_h) / pi;
+      sum += point.weight * 3 * x * x * brdf * light_of(h)[2] * 4 * v_h;
+    }
+    return 2 * last * sum * std::sin(a);
+  };
+  return adaptive_integral(ring, 0, std::min(std::atan(6 * lobe.roughness), pi / 2 - 1e-6), 24, 1e-7);
 }
 
 class Shader {
@@ -101,7 +109,7 @@ class Shader {
 
  private:
   /// Of the square root of the cosine: finer than a device has it.
-  static constexpr int nodes = 1024;
+  static constexpr int nodes = 512;
 
   void tabulate() {
     for (int i = 0; i <= nodes; ++i) {
@@ -208,7 +216,7 @@ class Shader {
 double reflected_share(const ShadingOptions& options, double cosine) {
   double sum = 0;
   for (const SpecularLobe& lobe : options.lobes) {
-    sum += lobe.weight * reflected_by_lobe(lobe, options.reflectance, cosine, 6);
+    if (lobe.weight > 0) sum += reflected_by_lobe(lobe, options.reflectance, cosine);
   }
   return sum;
 }

@@ -29,11 +29,12 @@ void put_row(std::array<double, 16>& matrix, int row, const Vector& v, double sc
   matrix[4 * row + 3] = last;
 }
 
-Light random_light(Random& random) {
+Light random_light(Random& random, bool from_above) {
   Light light;
   light.kind = static_cast<Light::Kind>(random.integer(0, 2));
   const auto any = [&] { return random.uniform(-1, 1); };
-  const Vector from = unit({any(), any(), any()});
+  Vector from = unit({any(), any(), any()});
+  if (from_above) from[2] = std::abs(from[2]);
   const double distance = random.uniform(15, 30);
   for (int i = 0; i < 3; ++i) {
     light.position[i] = distance * from[i];
@@ -110,10 +111,10 @@ dermis::Light RandomLight::get() const {
   return result;
 }
 
-std::vector<RandomLight> random_lights(Random& random, int count, bool with_gaps) {
+std::vector<RandomLight> random_lights(Random& random, int count, bool with_gaps, bool from_above) {
   std::vector<RandomLight> lights;
   for (int i = 0; i < count; ++i) {
-    lights.push_back({random_light(random), {}});
+    lights.push_back({random_light(random, from_above), {}});
     if (i == 0 || random.integer(0, 3) != 0) add_map(random, lights.back(), with_gaps);
   }
   return lights;

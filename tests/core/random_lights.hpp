@@ -18,8 +18,8 @@ struct RandomLight {
 };
 
 /// Lights around a surface within 10 units of the origin: most have a map, of any format and strides, over part of it,
-/// of bumps above and below the surface, with texels that show nothing.
-std::vector<RandomLight> random_lights(Random& random, int count, bool with_gaps = true);
+/// of bumps above and below the surface, with texels that show nothing. `from_above`: all where z > 0.
+std::vector<RandomLight> random_lights(Random& random, int count, bool with_gaps = true, bool from_above = false);
 
 std::vector<dermis::Light> all_of(const std::vector<RandomLight>& lights);
 
