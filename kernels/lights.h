@@ -54,6 +54,11 @@ static inline MapPlace place_on_map(global const struct LightParams* light, floa
   return place;
 }
 
+// The larger side of a texel at a point, scene units; 0 if there is no map.
+static inline float texel_at(global const struct LightParams* light, float3 point) {
+  return light->map_width == 0 ? 0.0f : light->texel * fmax(row_times(light->clip_w, point), 0.0f);
+}
+
 // How far a point lies behind what a texel shows, along the view axis; less than 0 or no number if it does not.
 static inline float depth_behind(global const struct LightParams* light, global const float* maps,
                                  const MapPlace* place, int x, int y) {

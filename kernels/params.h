@@ -260,6 +260,7 @@ struct LightParams {
   float axis[4];      // makes the distance along the view axis of the map of (x, y, z, 1)
   float depth_of[4];  // the distance of what a texel v shows is (a v + b) / (c v + d)
   float bias;
+  float texel;  // larger side of a texel, scene units; of a light with a position, per unit of w
 };
 
 // Intervals of the table of what a highlight reflects.

@@ -34,7 +34,7 @@ struct LightArguments {
   std::string compression;
   std::string device;
   std::vector<double> eye;
-  double normal_offset_units = ShadingOptions{}.normal_offset_units;
+  double normal_offset_texels = ShadingOptions{}.normal_offset_texels;
   double softness_texels = ShadingOptions{}.softness_texels;
 };
 
@@ -92,7 +92,7 @@ int run_light(const LightArguments& arguments) {
   for (const Role role : {Role::light, Role::albedo, Role::specular}) clear_others(picture, roles, role);
 
   ShadingOptions options = lights.shading();
-  options.normal_offset_units = arguments.normal_offset_units;
+  options.normal_offset_texels = arguments.normal_offset_texels;
   options.softness_texels = arguments.softness_texels;
   const std::vector<Light> sources = lights.lights();
   Shading(Device::open(arguments.device), options)
@@ -132,9 +132,10 @@ Command add_light(CLI::App& parent) {
       ->delimiter(',')
       ->expected(3)
       ->type_name("X,Y,Z");
-  app->add_option("--normal-offset", arguments->normal_offset_units,
-                  "how far above the surface a shadow map is looked up, scene units")
-      ->check(real_number([](double value) { return value >= 0; }, "scene units, a finite number >= 0"))
+  app->add_option(
+         "--normal-offset", arguments->normal_offset_texels,
+         "how far above the surface a shadow map is looked up, texels; from 0.5 on a plane does not shadow itself")
+      ->check(real_number([](double value) { return value >= 0 && value <= 1e6; }, "texels, from 0 to 1000000"))
       ->capture_default_str();
   app->add_option("--shadow-softness", arguments->softness_texels,
                   "half the side of the square of a shadow map that is averaged over, texels; 0: the nearest one")

@@ -27,9 +27,10 @@ struct ShadingOptions {
   std::vector<SpecularLobe> lobes = {{0.05, 0.1}, {0.1, 0.2}, {0.2, 0.3}, {0.3, 0.5}};  // d'Eon 2007
   /// Of light reflected head on, 0..1; the rest by Schlick 1994. ((n - 1) / (n + 1))^2 of the talk's n = 1.4.
   double reflectance = 0.0277777777777777778;
-  /// A point looks itself up in a map this far above the surface, along its normal, scene units >= 0, so that it does
-  /// not lie in its own shadow.
-  double normal_offset_units = 0.005;
+  /// A point looks itself up in a map above the surface, along its normal, so that it does not lie in its own shadow:
+  /// (this + softness_texels) sqrt(2) times the size of a texel at the point. 0..1e6; from 0.5 on a plane is free of
+  /// its own shadow under any angle, the rest is for rounding.
+  double normal_offset_texels = 0.6;
   /// Half the side, texels 0..16, of the square of a map over which shadow is averaged. 0: the nearest texel.
   double softness_texels = 0;
 

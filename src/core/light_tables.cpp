@@ -116,6 +116,9 @@ class CheckedLight {
     copy(row(0), p.clip_x);
     copy(row(1), p.clip_y);
     copy(row(3), p.clip_w);
+    const double finer =
+        std::min(length(direction_of(row(0))) * light_.map.width, length(direction_of(row(1))) * light_.map.height);
+    p.texel = static_cast<float>(2 / finer);
     if (is_directional()) {
       add_orthographic(direction, p);
     } else {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <string>
 
 #include "core/highlight_tables.hpp"
@@ -31,7 +32,7 @@ void check_options(const ShadingOptions& options) {
     check_range("weight", lobe.weight, 0, 1e6, "0 or more");
   }
   check_range("reflectance", options.reflectance, 0, 1, "0..1");
-  check_range("normal_offset_units", options.normal_offset_units, 0, 1e18, "0..1e18 scene units");
+  check_range("normal_offset_texels", options.normal_offset_texels, 0, 1e6, "0..1e6 texels");
   check_range("softness_texels", options.softness_texels, 0, 16, "0..16 texels");
 }
 
@@ -103,6 +104,8 @@ void Shading::run(const ShadingFrame& frame) const {
     const ImageMemory memory(context, frame.width, frame.height, images);
     check_outputs(memory, images, {{light, -1}, {seen, albedo}, {specular, -1}, {beauty, -1}});
     const BoundLights lights(context, queue, state_->program, frame.lights);
+    const double offset_texels =
+        (state_->options.normal_offset_texels + state_->options.softness_texels) * std::numbers::sqrt2;
     const auto output = [&](Name name) { return memory.buffer(memory.has(name) ? name : position); };
     run_per_pixel(queue, state_->program, "shade", frame.width, frame.height, frame.width, memory.buffer(position),
                   memory.layout(position), memory.buffer(normal), memory.layout(normal), memory.buffer(albedo),
@@ -111,8 +114,7 @@ void Shading::run(const ShadingFrame& frame) const {
                   frame.seen ? 1 : 0, frame.specular ? 1 : 0, frame.beauty ? 1 : 0, lights.lights(), lights.count(),
                   lights.maps(), state_->tables, state_->beckmann, state_->reflected,
                   static_cast<float>(state_->options.reflectance), static_cast<float>(state_->seen_gain), viewer,
-                  static_cast<float>(state_->options.normal_offset_units),
-                  static_cast<float>(state_->options.softness_texels));
+                  static_cast<float>(offset_texels), static_cast<float>(state_->options.softness_texels));
     queue.finish();
     memory.read_back(queue);
   });

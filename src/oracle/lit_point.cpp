@@ -58,7 +58,15 @@ Bounded LightSource::row_times(int row, const Vec3& point) const {
   const double value = its[0] * point[0] + its[1] * point[1] + its[2] * point[2] + its[3];
   const double magnitude =
       std::abs(its[0] * point[0]) + std::abs(its[1] * point[1]) + std::abs(its[2] * point[2]) + std::abs(its[3]);
-  return {value, 5 * unit_roundoff * magnitude};  // a rounded row, a product, three sums
+  return {value, 10 * unit_roundoff * magnitude};  // a point beside the surface, a rounded row, a product, three sums
+}
+
+double LightSource::texel_units(const Vec3& point) const {
+  if (!is_there(map_)) return 0;
+  const auto& m = light_.map.view_projection;
+  const double wide = 2 / (length({m[0], m[1], m[2]}) * map_.width);
+  const double high = 2 / (length({m[4], m[5], m[6]}) * map_.height);
+  return std::max(wide, high) * std::max(row_times(3, point).value, 0.0);
 }
 
 /// Along the view axis of the map.

@@ -26,6 +26,9 @@ class LightSource {
   const Light& light() const { return light_; }
   LitPoint reach(const Vec3& point) const;
 
+  /// The larger side of a texel of the map at a point; 0 without a map, or behind the light.
+  double texel_units(const Vec3& point) const;
+
   /// f of how far `deep` lies behind what a texel shows, along the view axis (minus infinity if it shows nothing), and
   /// of the length of the way of light per depth; falls with both.
   using OfDepth = std::function<double(double behind_units, double slant)>;

@@ -169,7 +169,8 @@ class Shader {
     const double facing_error = 2 * lit.towards_error + 10 * unit_roundoff;
     const double bias = source.light().map.bias_units;
     const auto is_lit = [&](double behind_units, double) { return behind_units > bias ? 0.0 : 1.0; };
-    const Vec3 outside = sum(point, scaled(normal, options_.normal_offset_units));
+    const Vec3 outside = sum(point, scaled(normal, source.texel_units(point) * std::numbers::sqrt2 *
+                                                       (options_.normal_offset_texels + options_.softness_texels)));
     const LightSource::Mean mean = source.mean_behind(outside, outside, options_.softness_texels, is_lit);
     const Bounded visible = mean.is_known ? mean.value : Bounded{1, mean.value.error};
     const Bounded strength = Bounded{std::max(facing, 0.0), facing_error} * lit.strength * visible;

@@ -29,7 +29,7 @@ ShadingOptions random_options(Random& random) {
       options.lobes.push_back({random.uniform(0.05, 0.6), random.uniform(0.05, 0.25)});
   }
   options.reflectance = random.uniform(0.02, 0.2);
-  options.normal_offset_units = random.uniform(0, 0.2);
+  options.normal_offset_texels = random.uniform(0, 2);
   options.softness_texels = random.coin() ? 0 : random.uniform(0.1, 3);
   return options;
 }
@@ -386,7 +386,7 @@ TEST_CASE("malformed calls of Shading are refused", "[shading]") {
       },
       "lobes: got weights that reflect");
   refuses([](Case& c, auto&) { c.options.reflectance = 2; }, "reflectance: got 2");
-  refuses([](Case& c, auto&) { c.options.normal_offset_units = -1; }, "normal_offset_units: got -1");
+  refuses([](Case& c, auto&) { c.options.normal_offset_texels = -1; }, "normal_offset_texels: got -1");
   refuses([](Case& c, auto&) { c.options.softness_texels = 17; }, "softness_texels: got 17");
   refuses([](Case&, auto& f) { f.normal = {}; }, "normal: got no image");
   refuses([](Case&, auto& f) { f.light = f.seen = f.specular = f.beauty = {}; }, "outputs: got none");
