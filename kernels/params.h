@@ -238,6 +238,41 @@ struct SmoothWeight {
   float skew[3];
 };
 
+// One material of the transmitted light.
+struct SlabParams {
+  int id;
+  int width_follows_albedo;
+  struct TableParams transmittance;  // T(s)
+};
+
+// Kinds of light, as dermis::Light::Kind.
+#define LIGHT_DIRECTIONAL 0
+#define LIGHT_POINT 1
+#define LIGHT_SPOT 2
+
+// One light, and its map.
+struct LightParams {
+  int kind;
+  int map_width;  // 0 if there is none
+  int map_height;
+  int first_texel;     // in the buffer of all maps
+  float direction[3];  // unit length
+  float position[3];
+  float colour[3];
+  float attenuation[3];
+  float cone[2];    // cosine of the outer angle, and 1 / (cosine of the inner one less that)
+  float clip_x[4];  // rows of the view-projection matrix
+  float clip_y[4];
+  float clip_w[4];
+  float axis[4];      // makes the distance along the view axis of the map of (x, y, z, 1)
+  float depth_of[4];  // the distance of what a texel v shows is (a v + b) / (c v + d)
+  float bias;
+  float texel;  // larger side of a texel, scene units; of a light with a position, per unit of w
+};
+
+// Intervals of the table of what a highlight reflects.
+#define RHO_NODES 1024
+
 // One rotation of the axes, times 4096: the offset (o, 0) of the horizontal pass becomes (o * cosine, o * sine_x), the
 // offset (0, o) of the vertical pass (o * sine_y, o * cosine).
 struct RotationParams {

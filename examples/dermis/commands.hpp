@@ -13,6 +13,7 @@ struct Command {
 };
 
 Command add_filter(CLI::App& parent);
+Command add_light(CLI::App& parent);
 Command add_info(CLI::App& parent);
 Command add_devices(CLI::App& parent);
 Command add_profiles(CLI::App& parent);

@@ -25,6 +25,7 @@
 #include "filter_arguments.hpp"
 #include "filter_session.hpp"
 #include "filter_texture.hpp"
+#include "lights_file.hpp"
 #include "loaded_frame.hpp"
 #include "output_file.hpp"
 #include "picture_png.hpp"
@@ -34,6 +35,7 @@
 #include "stopwatch.hpp"
 #include "surface_pixels.hpp"
 #include "tile_map.hpp"
+#include "translucency_step.hpp"
 
 namespace dermis::program {
 namespace {
@@ -205,6 +207,7 @@ void write_preview(const std::string& path, const exr::Picture& picture, const e
 struct Input {
   exr::Picture picture;
   LoadedFrame loaded;
+  std::optional<TranslucencyImages> translucency;
 };
 
 /// The result, and what is to be seen beside it: none takes its place before all are written.
@@ -238,7 +241,7 @@ void print_stats(const FilterArguments& arguments, const std::vector<NamedProfil
 }
 
 Input read_input(const FilterArguments& arguments, const std::vector<NamedProfile>& profiles, StatsReport& report) {
-  Input input{exr::Picture::read(arguments.picture.path), {}};
+  Input input{exr::Picture::read(arguments.picture.path), {}, {}};
   const exr::Picture& picture = input.picture;
   report.roles = exr::find_roles(picture, arguments.picture.roles, arguments.picture.layer);
   require_roles(picture, report.roles, profiles, report.options, !arguments.cryptomatte.empty());
@@ -246,6 +249,7 @@ Input read_input(const FilterArguments& arguments, const std::vector<NamedProfil
     exr::require(picture, report.roles, Role::beauty);
   report.camera = exr::find_camera(picture, report.roles, arguments.picture.camera);
   input.loaded = load_frame(picture, report.roles, report.camera, profiles, arguments.cryptomatte);
+  if (arguments.translucency.wanted) input.translucency = load_translucency_images(picture, report.roles);
   report.materials = report_materials(profiles, input.loaded, report.camera.camera, *arguments.picture.mm_per_unit);
   return input;
 }
@@ -297,7 +301,8 @@ std::vector<MethodPicture> compared_methods(const FilterArguments& arguments, co
 }
 
 /// One picture. The device is opened when the first one has been read.
-void filter_picture(const FilterArguments& arguments, std::optional<FilterSession>& session) {
+void filter_picture(const FilterArguments& arguments, const std::optional<LightsFile>& lights,
+                    std::optional<FilterSession>& session) {
   Stopwatch whole;
   Stopwatch step;
   StatsReport report;
@@ -315,6 +320,12 @@ void filter_picture(const FilterArguments& arguments, std::optional<FilterSessio
   if (is_automatic(arguments)) follow_tolerance(arguments, profiles, report);
   place_as_wide_as_needed(profiles, report);
   check_tiles(arguments, report);
+  if (input.translucency) {
+    TranslucencyOptions options = arguments.translucency.options;
+    options.lighting = report.options.lighting;
+    add_transmitted_light(session->device(), profiles, *lights, options, *input.translucency, frame,
+                          input.loaded.light);
+  }
   make_plan(*session, profiles, frame, report.options);
   report.times.plan_ms = step.lap_ms();
 
@@ -336,10 +347,12 @@ int run_filter(const FilterArguments& arguments) {
   if (is_texture(arguments.texture)) return filter_textures(arguments);
   options_of(arguments);  // what is wrong with all of them is said before any is written
   const std::vector<FilterArguments> pictures = one_by_one(arguments);
+  std::optional<LightsFile> lights;
+  if (arguments.translucency.wanted) lights.emplace("--lights", arguments.translucency.lights);
   std::optional<FilterSession> session;
   for (const FilterArguments& picture : pictures) {
     if (pictures.size() > 1 && (arguments.stats || !arguments.tile_map.empty())) fmt::print("{}\n", picture.output);
-    filter_picture(picture, session);
+    filter_picture(picture, lights, session);
     if (pictures.size() > 1) {
       fmt::print(stderr, "dermis: {} of {}: {}\n", &picture - pictures.data() + 1, pictures.size(), picture.output);
     }

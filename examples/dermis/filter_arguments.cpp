@@ -163,6 +163,7 @@ void add_filter_arguments(CLI::App& app, FilterArguments& arguments) {
   add_cryptomatte_argument(app, arguments.cryptomatte);
   add_texture_arguments(app, arguments.texture);
   add_method_arguments(app, arguments);
+  add_translucency_arguments(app, arguments.translucency);
   add_bad_pixels_argument(app, arguments.bad_pixels);
   add_device_arguments(app, arguments);
 }
@@ -241,6 +242,7 @@ Options options_of(const FilterArguments& arguments) {
         "raw light and no albedo mix, as the rule of 2012 knows of neither");
   check_discs(arguments);
   check_quality(arguments);
+  check_translucency(arguments.translucency);
   Options options = arguments.options;
   options.taps = design_of(arguments.design, is_automatic(arguments) ? tolerance_of(arguments.quality) : 0);
   options.method = is_disc(arguments) ? Method::disc : is_exact(arguments) ? Method::exact : Method::separable;
@@ -278,6 +280,7 @@ std::string command_text(const FilterArguments& arguments) {
   }
   add("--lighting", arguments.lighting);
   add("--albedo-mix", arguments.options.albedo_mix);
+  text += command_text(arguments.translucency);
   add("--bad-pixels", arguments.bad_pixels);
   if (picture.camera.fov_deg) add("--fov", *picture.camera.fov_deg);
   if (picture.camera.focal_px) add("--focal-px", *picture.camera.focal_px);

@@ -12,6 +12,7 @@
 #include "picture_arguments.hpp"
 #include "quality_arguments.hpp"
 #include "texture_arguments.hpp"
+#include "translucency_step.hpp"
 
 namespace dermis::program {
 
@@ -35,6 +36,7 @@ struct FilterArguments {
   QualityArguments quality;
   DiscArguments disc;
   DesignArguments design{.defaults = Options{}.taps, .may_be_automatic = true};
+  TranslucencyArguments translucency;
   std::string bad_pixels = "keep";
   std::string lighting = "raw";
   std::string shear = "auto";

@@ -9,15 +9,18 @@ void add_picture_arguments(CLI::App& app, PictureArguments& arguments) {
   add_reading_arguments(app, arguments);
 }
 
-void add_reading_arguments(CLI::App& app, PictureArguments& arguments) {
-  app.add_option(
-         "--role", arguments.roles,
-         "take light, albedo, depth, position, normal, material, mask, matte, specular, beauty, stretch_u or stretch_v "
-         "from these channels "
-         "(1 or 3 names with commas, or one prefix; + adds); repeatable")
+void add_role_arguments(CLI::App& app, PictureArguments& arguments) {
+  app.add_option("--role", arguments.roles,
+                 "take light, albedo, depth, position, normal, material, mask, matte, specular, beauty, thickness, "
+                 "stretch_u or "
+                 "stretch_v from these channels (1 or 3 names with commas, or one prefix; + adds); repeatable")
       ->allow_extra_args(false)
       ->type_name("ROLE=CHANNELS");
   app.add_option("--layer", arguments.layer, "the view layer, if there are several; else the first")->type_name("NAME");
+}
+
+void add_reading_arguments(CLI::App& app, PictureArguments& arguments) {
+  add_role_arguments(app, arguments);
   app.add_option("--mm-per-unit", arguments.mm_per_unit,
                  "millimetres per scene unit; no default, since it decides how far light spreads")
       ->check(number_above_zero("millimetres per scene unit"));

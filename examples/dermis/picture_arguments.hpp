@@ -20,6 +20,9 @@ struct PictureArguments {
 
 void add_picture_arguments(CLI::App& app, PictureArguments& arguments);
 
+/// Which channels to read.
+void add_role_arguments(CLI::App& app, PictureArguments& arguments);
+
 /// All but the path.
 void add_reading_arguments(CLI::App& app, PictureArguments& arguments);
 

@@ -93,11 +93,12 @@ enum class Role {
   specular,
   beauty,
   stretch_u,
-  stretch_v
+  stretch_v,
+  thickness
 };
-inline constexpr std::array all_roles = {Role::light,    Role::albedo,   Role::depth,     Role::position,
-                                         Role::normal,   Role::material, Role::mask,      Role::matte,
-                                         Role::specular, Role::beauty,   Role::stretch_u, Role::stretch_v};
+inline constexpr std::array all_roles = {Role::light,     Role::albedo,    Role::depth,    Role::position, Role::normal,
+                                         Role::material,  Role::mask,      Role::matte,    Role::specular, Role::beauty,
+                                         Role::stretch_u, Role::stretch_v, Role::thickness};
 
 std::string_view name_of(Role role);
 
@@ -160,6 +161,8 @@ struct FoundCamera {
   std::string source;                 ///< "--fov", "--focal-px", "--px-per-unit", "position and depth" or "position"
   double residual_units = 0;          ///< largest distance of a recovered point from its position, if recovered
   std::optional<ViewAxis> axis = {};  ///< if the picture has positions and no depth
+  /// World space, if recovered: the eye, scene units, or the direction in which an orthographic camera looks.
+  std::optional<std::array<double, 3>> eye = {};
 };
 
 /// The camera of a picture: from the hint, else by linear least squares from position and depth: P = C + Z x u + Z y v

@@ -102,6 +102,13 @@ class Profile {
   /// Share of the light of a point that leaves within the distance r (0..1).
   double cdf(int channel, double r_mm) const;
 
+  /// What comes through a slab of thickness s under the same light everywhere behind it: T(s), the integral of
+  /// R(sqrt(r^2
+  /// + s^2)) over the plane (Jimenez et al. 2010, eq. 7; Golubev 2018), which is the light beyond a distance s, 1 -
+  /// cdf(s). For a sum of Gaussians that is the sum of w exp(-s^2 / 2v) (the paper drops the 2), for Burley's profile
+  /// (e^(-s/d) + 3 e^(-s/3d)) / 4. T(0) = 1; T falls monotonically. thickness_mm >= 0, or infinite.
+  double transmittance(int channel, double thickness_mm) const;
+
   /// The distance within which `share` (in [0, 1)) of the light leaves: the inverse of cdf. For Burley
   /// the closed form y = 2 sinh(asinh(2 (1 - u)) / 3), r = -3 d ln y.
   double radius(int channel, double share) const;

@@ -1,7 +1,9 @@
 #include "core/linear_table.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 namespace dermis {
@@ -37,6 +39,17 @@ LinearTable tabulate_linear(const std::function<double(int, double)>& f, double 
     table.values.push_back(value);
     if (at_end) return table;
   }
+}
+
+params::TableParams append_table(const LinearTable& table, std::vector<std::array<float, 4>>& nodes) {
+  const auto count = static_cast<int>(table.values.size());
+  const int shift = 23 - table.log2_nodes_per_octave;
+  const params::TableParams result{static_cast<int>(nodes.size()),
+                                   std::bit_cast<std::int32_t>(std::ldexp(1.0F, table.first_exponent)),
+                                   (count - 1) << shift};
+  for (const auto& [r, g, b] : table.values) nodes.push_back({r, g, b, 0});
+  nodes.push_back(nodes.back());  // a look-up at the last node reads the next one too
+  return result;
 }
 
 }  // namespace dermis

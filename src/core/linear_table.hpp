@@ -5,6 +5,8 @@
 #include <functional>
 #include <vector>
 
+#include "core/params.hpp"
+
 namespace dermis {
 
 /// A function of distance for three channels: nodes sit at r^2 = 2^e (1 + m / M) for the integers e >= first_exponent
@@ -21,5 +23,8 @@ struct LinearTable {
 /// Relative error between nodes: about (r^2 / nodes)^2 f'' / (8 f), derivatives with respect to r^2.
 LinearTable tabulate_linear(const std::function<double(int, double)>& f, double r_min_mm, double r_max_mm,
                             int log2_nodes_per_octave);
+
+/// Adds a table to those in a buffer, as linear_table.h reads it.
+params::TableParams append_table(const LinearTable& table, std::vector<std::array<float, 4>>& nodes);
 
 }  // namespace dermis

@@ -19,17 +19,6 @@ namespace {
 /// The share of the light that the exact integral looks for: the rest is below its rounding.
 constexpr double share_within_reach = 1 - 1e-6;
 
-params::TableParams append_table(const LinearTable& table, MaterialTables& tables) {
-  const auto nodes = static_cast<int>(table.values.size());
-  const int shift = 23 - table.log2_nodes_per_octave;
-  const params::TableParams result{static_cast<int>(tables.nodes.size()),
-                                   std::bit_cast<std::int32_t>(std::ldexp(1.0F, table.first_exponent)),
-                                   (nodes - 1) << shift};
-  for (const auto& [r, g, b] : table.values) tables.nodes.push_back({r, g, b, 0});
-  tables.nodes.push_back(tables.nodes.back());  // a look-up at the last node reads the next one too
-  return result;
-}
-
 params::OctavesParams octaves_params(const RadialTable& table) {
   static_assert(RadialTable::octaves == OCTAVES);
   params::OctavesParams row{};
@@ -140,7 +129,7 @@ void append_exact_tables(const Profile& profile, params::MaterialParams& row, Ma
   row.reach_mm = static_cast<float>(reach_mm);
   const double finest_mm = std::ldexp(reach_mm, -18);
   const auto append = [&](const std::function<double(int, double)>& f) {
-    return append_table(tabulate_linear(f, finest_mm, reach_mm, log2_nodes_per_octave_of_exact), tables);
+    return append_table(tabulate_linear(f, finest_mm, reach_mm, log2_nodes_per_octave_of_exact), tables.nodes);
   };
   row.radial = append([&](int c, double r) { return profile.radial(c, r); });
   row.cumulated = append([&](int c, double r) { return profile.cdf(c, r); });

@@ -127,7 +127,8 @@ FoundCamera recovered(const Picture& picture, const Roles& roles) {
   return {.camera = fit.camera,
           .source = source,
           .residual_units = fit.residual_units,
-          .axis = is_perspective ? perspective.axis : orthographic.axis};
+          .axis = is_perspective ? perspective.axis : orthographic.axis,
+          .eye = fit.eye};
 }
 
 std::optional<FoundCamera> hinted(const Picture& picture, const CameraHint& hint) {

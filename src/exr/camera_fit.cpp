@@ -277,7 +277,15 @@ class Fitting {
     if (!(std::abs(view.norm() - 1) <= largest_stretch)) {
       return {.fit = {}, .why_not = "depth is " + text_of(1 / view.norm()) + " times that of the positions"};
     }
-    return {.fit = CameraFit{.camera = camera, .rms_px = rms, .residual_units = largest_units()}, .why_not = {}};
+    // Positions are fitted from their middle.
+    const bool is_perspective = projection_ == Projection::perspective;
+    const Eigen::Vector3d eye =
+        is_perspective ? Eigen::Vector3d((scale_.position + solution_.coefficients.row(0)).transpose()) : view;
+    return {
+        .fit =
+            CameraFit{
+                .camera = camera, .eye = {eye(0), eye(1), eye(2)}, .rms_px = rms, .residual_units = largest_units()},
+        .why_not = {}};
   }
 
   Projection projection_;

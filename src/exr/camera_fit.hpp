@@ -22,8 +22,9 @@ struct SeenPoint {
 /// A least-squares fit of one kind of camera.
 struct CameraFit {
   Camera camera;
-  double rms_px = 0;          ///< of the points that were kept
-  double residual_units = 0;  ///< largest of the points that were kept
+  std::array<double, 3> eye = {};  ///< C if perspective, the direction n if orthographic
+  double rms_px = 0;               ///< of the points that were kept
+  double residual_units = 0;       ///< largest of the points that were kept
 };
 
 /// A fit, or why there is none.

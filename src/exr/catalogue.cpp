@@ -15,8 +15,8 @@ constexpr std::array<std::string_view, 6> single_endings = {"Z", "X", "V", "Y", 
 }  // namespace
 
 std::size_t values_of(Role role) {
-  constexpr std::array single = {Role::depth, Role::material,  Role::mask,
-                                 Role::matte, Role::stretch_u, Role::stretch_v};
+  constexpr std::array single = {Role::depth,     Role::material,  Role::mask,     Role::matte,
+                                 Role::stretch_u, Role::stretch_v, Role::thickness};
   return std::find(single.begin(), single.end(), role) != single.end() ? 1 : 3;
 }
 

@@ -27,6 +27,7 @@ constexpr std::array<std::string_view, 1> position = {"position"};
 constexpr std::array<std::string_view, 1> normal = {"normal"};
 constexpr std::array<std::string_view, 2> material_index = {"indexma", "material index"};
 constexpr std::array<std::string_view, 1> mask = {"mask"};
+constexpr std::array<std::string_view, 1> thickness = {"thickness"};
 constexpr std::array<std::string_view, 2> combined = {"combined", ""};  // "": R, G and B of the layer itself
 
 /// How one pass of a role is called; a role is the sum of its passes.
@@ -35,7 +36,7 @@ struct Pass {
   Names names;
 };
 
-constexpr std::array<Pass, 11> passes = {{{Role::light, diffuse_direct},
+constexpr std::array<Pass, 12> passes = {{{Role::light, diffuse_direct},
                                           {Role::light, diffuse_indirect},
                                           {Role::albedo, diffuse_color},
                                           {Role::depth, depth},
@@ -45,7 +46,8 @@ constexpr std::array<Pass, 11> passes = {{{Role::light, diffuse_direct},
                                           {Role::mask, mask},
                                           {Role::specular, glossy_direct},
                                           {Role::specular, glossy_indirect},
-                                          {Role::beauty, combined}}};
+                                          {Role::beauty, combined},
+                                          {Role::thickness, thickness}}};
 
 std::vector<std::string> find_pass(const Catalogue& catalogue, std::string_view layer, const Pass& pass) {
   for (const std::string_view name : pass.names) {
@@ -164,9 +166,9 @@ std::string chosen_layer(const Catalogue& catalogue, std::string_view wanted) {
 }  // namespace
 
 std::string_view name_of(Role role) {
-  constexpr std::array<std::string_view, all_roles.size()> names = {"light",    "albedo",   "depth",     "position",
-                                                                    "normal",   "material", "mask",      "matte",
-                                                                    "specular", "beauty",   "stretch_u", "stretch_v"};
+  constexpr std::array<std::string_view, all_roles.size()> names = {
+      "light", "albedo",   "depth",  "position",  "normal",    "material", "mask",
+      "matte", "specular", "beauty", "stretch_u", "stretch_v", "thickness"};
   return names[static_cast<std::size_t>(role)];
 }
 

@@ -20,6 +20,9 @@ struct FrameImages {
   Picture beauty;
 };
 
+/// One host image, whatever its format and strides; empty if there is none. Throws Error(usage) if it is a buffer.
+Picture read_image(const Image& image, int width, int height, int channels, std::string_view name);
+
 /// Reads the host images of a frame. Throws Error(usage) if its size is not positive or an image lies in a device
 /// buffer, Error(role_missing) if there is no light, or no depth under a perspective camera.
 FrameImages read_images(const Frame& frame);

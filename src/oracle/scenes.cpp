@@ -25,9 +25,16 @@ double highlight(const Vec3& normal, const Vec3& towards_viewer) {
   return 0.3 * std::pow(std::max(0.0, dot(normal, half_way)), 30);
 }
 
-Camera camera_for(int width, int height, double px_per_mm, double focal_px, Camera::Projection projection) {
+double focal_of(const Kind& kind, int width, int height) { return kind.focal_per_side * std::max(width, height); }
+
+Camera camera_for(const Kind& kind, int width, int height, double px_per_mm, Camera::Projection projection) {
+  const double focal_px = focal_of(kind, width, height);
   const double scale = projection == Camera::Projection::perspective ? focal_px : px_per_mm;
   return {projection, scale, scale, width / 2.0, height / 2.0};
+}
+
+Setting setting_of(const Kind& kind, int width, int height, double px_per_mm, const Camera& camera) {
+  return {width, height, px_per_mm, focal_of(kind, width, height) / px_per_mm, View(camera, 1)};
 }
 
 template <std::size_t N>
@@ -117,16 +124,62 @@ std::span<const SceneInfo> scenes() {
 Scene scene(std::string_view name, int width, int height, double px_per_mm, Camera::Projection projection) {
   const Kind& kind = kind_of(name);
   check(width, height, px_per_mm);
-  const double focal_px = kind.focal_per_side * std::max(width, height);
-  const Camera camera = camera_for(width, height, px_per_mm, focal_px, projection);
-  const double distance_mm = focal_px / px_per_mm;
-  const Setting setting{width, height, px_per_mm, distance_mm, View(camera, 1)};
+  const Camera camera = camera_for(kind, width, height, px_per_mm, projection);
+  const Setting setting = setting_of(kind, width, height, px_per_mm, camera);
   const std::unique_ptr<Subject> subject = kind.make(setting);
   Scene scene = empty_scene(width, height, camera);
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) draw(scene, *subject, setting, x, y);
   }
   return scene;
+}
+
+Light SceneLight::with_map() const {
+  Light result = light;
+  result.map.depth = packed(depth);
+  return result;
+}
+
+SceneLight scene_light(std::string_view name, int width, int height, double px_per_mm, Camera::Projection projection,
+                       int texels) {
+  const Kind& kind = kind_of(name);
+  check(width, height, px_per_mm);
+  const Camera camera = camera_for(kind, width, height, px_per_mm, projection);
+  const std::unique_ptr<Subject> subject = kind.make(setting_of(kind, width, height, px_per_mm, camera));
+  const std::optional<Caster> caster = subject->caster();
+  if (!caster) throw Error(ErrorCode::usage, "scene", name, "sphere, whose light has a shadow map");
+  constexpr double margin = 1.05;
+  const double half_mm = margin * caster->radius_mm;
+  const Vec3 direction = scaled(towards_light, -1);
+  const Vec3 right = unit(cross(direction, {0, 1, 0}));
+  const Vec3 up = cross(right, direction);
+  const Vec3 eye = difference(caster->center, scaled(direction, 2 * caster->radius_mm));
+  SceneLight result;
+  result.light.direction = direction;
+  result.light.position = eye;
+  result.light.colour = sun_colour;
+  ShadowMap& map = result.light.map;
+  map.width = map.height = texels;
+  for (int i = 0; i < 3; ++i) {
+    map.view_projection[static_cast<std::size_t>(i)] = right[static_cast<std::size_t>(i)] / half_mm;
+    map.view_projection[static_cast<std::size_t>(4 + i)] = up[static_cast<std::size_t>(i)] / half_mm;
+    map.view_projection[static_cast<std::size_t>(8 + i)] =
+        direction[static_cast<std::size_t>(i)] / (4 * caster->radius_mm);
+  }
+  map.view_projection[3] = -dot(right, eye) / half_mm;
+  map.view_projection[7] = -dot(up, eye) / half_mm;
+  map.view_projection[11] = -dot(direction, eye) / (4 * caster->radius_mm);
+  map.view_projection[15] = 1;
+  for (int y = 0; y < texels; ++y) {
+    for (int x = 0; x < texels; ++x) {
+      const double across = half_mm * (2 * (x + 0.5) / texels - 1);
+      const double above = half_mm * (1 - 2 * (y + 0.5) / texels);
+      const Ray ray{sum(eye, sum(scaled(right, across), scaled(up, above))), direction};
+      const std::optional<double> depth = subject->first_along(ray);
+      result.depth.push_back(depth ? static_cast<float>(*depth) : unseen_depth);
+    }
+  }
+  return result;
 }
 
 }  // namespace dermis::oracle

@@ -98,8 +98,11 @@ class Sphere : public Subject {
     const Rgb ambient{0.05, 0.07, 0.1};
     const bool shadow = hit.material == 1 ? under_bar(point_mm) : behind_sphere(point_mm);
     const double sun = shadow ? 0 : std::max(0.0, dot(hit.normal, towards_light));
-    return {ambient[0] + sun, ambient[1] + 0.95 * sun, ambient[2] + 0.85 * sun};
+    return {ambient[0] + sun_colour[0] * sun, ambient[1] + sun_colour[1] * sun, ambient[2] + sun_colour[2] * sun};
   }
+
+  std::optional<Caster> caster() const override { return Caster{center_, radius_mm_}; }
+  std::optional<double> first_along(const Ray& ray) const override { return meet(ray); }
 
  private:
   /// Depth of the first point of the sphere on the ray.

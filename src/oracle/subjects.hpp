@@ -45,6 +45,12 @@ struct Hit {
   Rgb albedo;
 };
 
+/// A sphere around what casts a shadow.
+struct Caster {
+  Vec3 center;
+  double radius_mm;
+};
+
 /// Shape and light of a kind of scene.
 class Subject {
  public:
@@ -55,6 +61,10 @@ class Subject {
 
   virtual std::optional<Hit> hit(int x, int y) const = 0;
   virtual Rgb light(int x, int y, const Vec3& point_mm, const Hit& hit) const = 0;
+
+  /// What casts the shadow that a map of the light shows, if there is a map, and how far along a ray it begins.
+  virtual std::optional<Caster> caster() const { return std::nullopt; }
+  virtual std::optional<double> first_along(const Ray&) const { return std::nullopt; }
 
  protected:
   Hit facing_plane(int material, const Rgb& albedo) const {
@@ -76,6 +86,9 @@ std::unique_ptr<Subject> make_head(const Setting& setting);
 
 /// All there are.
 std::span<const Kind> kinds();
+
+/// The colour of that light where it is not 1.
+inline constexpr Rgb sun_colour{1, 0.95, 0.85};
 
 /// Unit direction from any surface to the light.
 inline constexpr Vec3 towards_light{-2.0 / 7, -3.0 / 7, -6.0 / 7};

@@ -238,6 +238,12 @@ double Profile::spectrum(int channel, double omega_per_mm) const { return curve(
 
 double Profile::cdf(int channel, double r_mm) const { return curve(channel).disc(r_mm); }
 
+double Profile::transmittance(int channel, double thickness_mm) const {
+  if (!(thickness_mm >= 0)) throw Error(ErrorCode::usage, "thickness_mm", number_text(thickness_mm), "0 mm or more");
+  if (thickness_mm == 0) return 1;
+  return thickness_mm < curve(channel).reach() ? curve(channel).disc_tail(thickness_mm) : 0;
+}
+
 double Profile::radius(int channel, double share) const {
   require_share(share);
   return curve(channel).radius(share);

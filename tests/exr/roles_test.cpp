@@ -167,8 +167,8 @@ TEST_CASE("malformed overrides are usage errors, unknown channels missing roles"
     INFO(text);
     REQUIRE(finding(picture, {text}).code == ErrorCode::usage);
   }
-  REQUIRE(
-      finding(picture, {"lamp=x"}).says("light, albedo, depth, position, normal, material, mask, matte, specular, beauty"));
+  REQUIRE(finding(picture, {"lamp=x"})
+              .says("light, albedo, depth, position, normal, material, mask, matte, specular, beauty"));
   for (const char* text : {"light=nope", "light=L.DiffDir.R,L.DiffDir.G,nope", "depth=L.DiffDir.Q", "depth=nope"}) {
     INFO(text);
     const Failure failure = finding(picture, {text});

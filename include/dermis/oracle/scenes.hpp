@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "dermis/frame.hpp"
+#include "dermis/lights.hpp"
 
 namespace dermis::oracle {
 
@@ -44,5 +45,19 @@ std::span<const SceneInfo> scenes();
 /// size or scale is not positive.
 Scene scene(std::string_view name, int width, int height, double px_per_mm = 4,
             Camera::Projection projection = Camera::Projection::perspective);
+
+/// The light of a scene and what it sees.
+struct SceneLight {
+  Light light;               ///< without the image of its map
+  std::vector<float> depth;  ///< linear, mm; 1e10 where nothing is seen
+
+  /// The light with a view of these depths.
+  Light with_map() const;
+};
+
+/// The directional light of the scene of that name and arguments, with a map of texels x texels around what casts its
+/// shadow: of "sphere" the sphere, not the bar. Throws Error(usage) for other scenes.
+SceneLight scene_light(std::string_view name, int width, int height, double px_per_mm, Camera::Projection projection,
+                       int texels);
 
 }  // namespace dermis::oracle
