@@ -17,9 +17,9 @@
 #define FEW_RADIUS_PX 2.0f
 #define ALL_RADIUS_PX 3.0f
 
-// A disc is tilted no more than this, as change of depth per change of place on the screen, 45 degrees: samples of one
-// that is seen edge on would lie on a line, whatever the surface does beside it.
-#define STEEPEST 1.0f
+// A disc is tilted no more than this, as change of depth per change of place on the screen: samples of one that is seen
+// edge on would lie on a line, whatever the surface does beside it.
+#define STEEPEST 0.75f
 
 // No sample is farther, px.
 #define FARTHEST_PX 131072.0f

@@ -51,7 +51,9 @@ enum class Method {
 struct DiscOptions {
   /// Per pixel: 1..1024; 0: 21 for kernels within 4 x 4 pixels, 55 for those from 6 x 6 on, and both blended between.
   int samples = 0;
-  bool tangent_plane = true;  ///< the disc touches the surface: Frame::normal, or the slopes of depth; else the screen
+  /// The disc lies along the surface, by Frame::normal or the slopes of depth, but tilted no more than 3 in 4 from the
+  /// screen; else along the screen.
+  bool tangent_plane = true;
   /// Samples that stand for more than a pixel read means over as much: blocks of 2 x 2, 4 x 4, ... pixels, where all of
   /// one are of the material and nearly in a plane.
   bool prefiltered = false;

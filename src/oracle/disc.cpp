@@ -25,7 +25,7 @@ constexpr int few_samples = 21;
 constexpr int usual_samples = 55;
 constexpr double few_radius_px = 2;
 
-constexpr double steepest = 1;  ///< change of depth per change of place on the screen, of a disc
+constexpr double steepest = 0.75;  ///< change of depth per change of place on the screen, of a disc
 constexpr int most_levels = 9;
 constexpr double share_within_reach = 1 - 1e-6;
 

@@ -43,7 +43,8 @@ class NaturalCard {
     }
     for (int y = 0; y < whole_px_; ++y) {
       for (int x = 0; x < whole_px_; ++x) {
-        for (int c = 0; c < 3; ++c) image_.push_back(static_cast<float>(light_[c][inside(x - margin_px, y - margin_px)]));
+        for (int c = 0; c < 3; ++c)
+          image_.push_back(static_cast<float>(light_[c][inside(x - margin_px, y - margin_px)]));
         const bool takes_light = std::min(x, y) >= margin_px && std::max(x, y) < margin_px + side_px;
         mask_.push_back(takes_light ? 1.0F : 1e-6F);
       }
@@ -261,7 +262,8 @@ TEST_CASE("no material takes light of another through blocks of pixels or betwee
       const std::size_t dark = scene.light[3 * i] > 0 ? 2 : 0;
       REQUIRE(scene.light[3 * i + dark] == 0);
       REQUIRE(scattered[3 * i + dark] == 0);
-      changed = std::max(changed, static_cast<double>(std::abs(scattered[3 * i + 2 - dark] - scene.light[3 * i + 2 - dark])));
+      changed =
+          std::max(changed, static_cast<double>(std::abs(scattered[3 * i + 2 - dark] - scene.light[3 * i + 2 - dark])));
     }
     CHECK(changed > 0.01);
   }
