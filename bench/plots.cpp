@@ -152,8 +152,8 @@ Chart cost_width(const Measurement& measurement, Geometry geometry) {
            row.what.family != Family::opencv_bilateral;
   };
   return cost(measurement, geometry == Geometry::flat ? "flat, 1920x1080" : "three spheres, 1920x1080",
-              "standard deviation of the widest Gaussian, px", "set xtics (8,16,32,64,120)\nset xrange [7:137]", belongs,
-              [](const Row& row) { return row.what.scene.kernel_px; });
+              "standard deviation of the widest Gaussian, px", "set xtics (8,16,32,64,120)\nset xrange [7:137]",
+              belongs, [](const Row& row) { return row.what.scene.kernel_px; });
 }
 
 Chart cost_coverage(const Measurement& measurement) {

@@ -1,5 +1,7 @@
 // What must not change a single bit of a scattered texture.
 #include <cmath>
+#include <future>
+#include <utility>
 
 #include "catch.hpp"
 #include "core/device.hpp"
@@ -136,4 +138,28 @@ TEST_CASE("a scattered texture does not depend on how it is computed", "[texture
     CHECK(same_bytes(scattered, *texture.scattered));
     CHECK(same_bytes(result, *texture.result));
   }
+}
+
+TEST_CASE("threads may share a plan for textures", "[texture][sharing]") {
+  const TextureMethod method = GENERATE(TextureMethod::gaussians, TextureMethod::recursive);
+  Random random(1120);
+  RandomTexture first(random, {.width = width, .height = height, .method = method, .charts = true, .stretch = false});
+  RandomTexture second = first;
+  second.mm_per_texel *= 2;
+  const TexturePlan plan(Device::open(), first.profile, TextureDescription::of(first.frame()), first.options);
+  plan.run(first.frame());
+  plan.run(second.frame());
+  const auto expected = std::pair(bits_of(*first.scattered), bits_of(*second.scattered));
+  CHECK(expected.first != expected.second);
+  const auto run_often = [&plan](RandomTexture& texture, const std::vector<std::uint32_t>& its) {
+    int different = 0;
+    for (int round = 0; round < 4; ++round) {
+      plan.run(texture.frame());
+      if (bits_of(*texture.scattered) != its) ++different;
+    }
+    return different;
+  };
+  auto other = std::async(std::launch::async, [&] { return run_often(second, expected.second); });
+  CHECK(run_often(first, expected.first) == 0);
+  CHECK(other.get() == 0);
 }
