@@ -56,7 +56,7 @@ int parse_and_run(int argc, char** argv) {
   app.footer(
       "Exit codes: 0 done, 1 differs (compare), 2 usage, 3 input missing, 4 input damaged or unsupported,\n"
       "5 role or camera missing, 6 output, 7 device.");
-  const std::array commands{add_filter(app), add_light(app),   add_info(app),    add_devices(app), add_profiles(app),
+  const std::array commands{add_filter(app), add_info(app),    add_light(app),   add_devices(app), add_profiles(app),
                             add_taps(app),   add_compare(app), add_preview(app), add_scene(app)};
   if (argc > 1 && argv[1][0] != '-') check_command(app, argv[1]);
   try {

@@ -152,6 +152,9 @@ TEST_CASE("a perspective camera is recovered from any pose, with any centre and 
     REQUIRE(found.source == "position and depth");
     REQUIRE(found.residual_units >= 0);
     REQUIRE(found.residual_units < 1e-4);
+    REQUIRE(found.eye);
+    // Of a depth of up to 20.
+    for (std::size_t k = 0; k < 3; ++k) REQUIRE(std::abs((*found.eye)[k] - scene.eye[k]) < 20 * tolerance);
   }
 }
 
@@ -159,7 +162,10 @@ TEST_CASE("an orthographic camera is recovered from any pose, with any pixel asp
   Random random(22);
   for (int i = 0; i < 20; ++i) {
     const Scene scene = random_scene(random, Camera::Projection::orthographic);
-    require_near(found_in(scene).camera, scene.camera, tolerance);
+    const FoundCamera found = found_in(scene);
+    require_near(found.camera, scene.camera, tolerance);
+    REQUIRE(found.eye);
+    for (std::size_t k = 0; k < 3; ++k) REQUIRE(std::abs((*found.eye)[k] - scene.rotation[k][2]) < 10 * tolerance);
   }
 }
 
@@ -377,6 +383,7 @@ TEST_CASE("pixels that are not square have two focal lengths") {
   REQUIRE(output->close());
   const Picture picture = Picture::read(folder / "wide.exr");
   REQUIRE(find_camera(picture, {}, {.focal_px = 100}).camera.scale_y == 200);
+  REQUIRE_FALSE(find_camera(picture, {}, {.focal_px = 100}).eye);
   REQUIRE(find_camera(picture, {}, {.fov_deg = 90}).camera.scale_x == Approx(10));
   REQUIRE(find_camera(picture, {}, {.fov_deg = 90}).camera.scale_y == Approx(20));
   REQUIRE(find_camera(picture, {}, {.orthographic_px_per_unit = 5}).camera.scale_y == 10);
