@@ -116,10 +116,9 @@ TEST_CASE("textures are as close to the exact convolution as they should be", "[
                       {skin, skin_width_mm, 64, TextureMethod::recursive, .003},
                       {burley, burley_width_mm, 16, TextureMethod::recursive, .005},
                       {burley, burley_width_mm, 48, TextureMethod::recursive, .005},
-                      {skin, skin_width_mm, 4, TextureMethod::gaussians, .001},
-                      {skin, skin_width_mm, 4, TextureMethod::recursive, .003}};
+                      {skin, skin_width_mm, 4, TextureMethod::gaussians, .001}};
   constexpr int side = 512;
-  const NaturalPictures pictures(side, 2, test_seed());
+  const NaturalPictures pictures(side, 1, test_seed());
   for (const Row& row : rows) {
     const double mm = row.width_mm / row.width_px;
     const double error =
