@@ -132,7 +132,11 @@ TEST_CASE("textures are as close to the exact convolution as they should be", "[
 TEST_CASE("of every kind of profile the poles are known to be as good as they are", "[texture][accuracy]") {
   Random random(1200);
   const std::vector<SomeProfile> profiles = profiles_of_every_kind(1201);
-  const int measured = random.integer(0, static_cast<int>(profiles.size()) - 1);
+  std::vector<std::size_t> measurable;  // by a plan, and soon
+  for (std::size_t i = 0; i < profiles.size(); ++i) {
+    if (profiles[i].breaks.empty() && !profiles[i].profile.width_follows_albedo()) measurable.push_back(i);
+  }
+  const std::size_t measured = measurable[random.integer(0, static_cast<int>(measurable.size()) - 1)];
   const int table = random.integer(0, 2);  // they take longest
   int tables = 0;
   for (std::size_t i = 0; i < profiles.size(); ++i) {
@@ -153,7 +157,7 @@ TEST_CASE("of every kind of profile the poles are known to be as good as they ar
         CHECK(std::abs(integral - (functions == &recursion.main ? 1 : 0)) < 1e-9);
       }
     }
-    if (static_cast<int>(i) != measured) continue;
+    if (i != measured) continue;
     constexpr int side = 256;
     const double mm = profile.half_width(profile.widest_channel(), 0.999) / random.uniform(8, 60);
     const double error =
