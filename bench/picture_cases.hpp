@@ -27,6 +27,7 @@ struct PictureRow {
   double copy_ratio = 0;       ///< ms / time of FrameCopy on a frame of that size in the same rounds
   double loads = 0;            ///< pixels read per pixel written, both passes; 0 if it varies
   double plan_ms = 0;          ///< building the plan
+  double scratch_mib = 0;      ///< device memory beyond the images
   std::vector<double> rel_l2;  ///< of the scattered light against the exact method, per material
   double edge_rel_l2 = 0;      ///< of all materials, within 3 px of an edge
   double max_error = 0;        ///< largest difference from the exact method

@@ -1,9 +1,12 @@
 #include "picture_measurement.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "copy.hpp"
 #include "dermis/oracle/compare.hpp"
+#include "dermis/oracle/rule_2012.hpp"
 #include "percentile.hpp"
 #include "picture_edges.hpp"
 #include "stopwatch.hpp"
@@ -37,6 +40,8 @@ struct Running {
   Running(const Device& device, const Subject& subject, const PictureCase& what)
       : plan(timed_plan(device, subject, what.options, row.plan_ms)), scattered(subject.light.size()) {
     row.what = what;
+    constexpr double mib = 1024 * 1024;
+    row.scratch_mib = static_cast<double>(plan.scratch_bytes(subject.width, subject.height)) / mib;
   }
 
   void run(const Subject& subject) {
@@ -52,6 +57,20 @@ struct Running {
     return std::move(*plan);
   }
 };
+
+constexpr int rule_2012_taps = 25;
+
+/// Taps reach 3 mm for skin, a third of the radius of its kernel.
+oracle::Picture by_rule_2012(const Subject& subject) {
+  std::vector<oracle::SliceMaterial> slices;
+  for (const Material& material : subject.materials) {
+    const Profile& profile = material.profile;
+    slices.push_back({material.id, [&profile](int channel, double r_mm) { return profile.radial(channel, r_mm); },
+                      profile.half_width(profile.widest_channel(), 0.999) / 3});
+  }
+  std::vector<float> none;
+  return oracle::rule_2012(subject.frame(none), slices, rule_2012_taps);
+}
 
 void add_times(PictureRow& row, const Running& running, double copy_ms) {
   row.ms = percentile(running.total_ms, 0.5);
@@ -132,18 +151,24 @@ PictureMeasurement measure_picture(const Device& device, const Subject& subject,
     masks.push_back(mask_of(subject, i));
     result.pixels.push_back(std::count(masks[i].values.begin(), masks[i].values.end(), 1.0));
   }
+  const auto add_errors = [&](PictureRow& row, const oracle::Picture& picture) {
+    for (const oracle::Picture& mask : masks) {
+      const oracle::Difference difference = oracle::compare(picture, truth, mask);
+      row.rel_l2.push_back(difference.relative_l2);
+      row.max_error = std::max(row.max_error, difference.max);
+    }
+    row.edge_rel_l2 = oracle::compare(picture, truth, edges).relative_l2;
+  };
+  report("the rule of 2012");
+  result.rule_2012.what.name = fmt::format("rule of 2012, {} taps", rule_2012_taps);
+  result.rule_2012.loads = 2 * rule_2012_taps;
+  add_errors(result.rule_2012, by_rule_2012(subject));
   for (Running& one : running) {
     add_times(one.row, one, result.copy_ms);
     const Options& options = one.row.what.options;
     one.row.loads =
         options.method == Method::disc ? 4.0 * options.disc.samples : (1.0 + options.taps.rank) * options.taps.count;
-    const oracle::Picture picture = picture_of(subject, one.scattered);
-    for (const oracle::Picture& mask : masks) {
-      const oracle::Difference difference = oracle::compare(picture, truth, mask);
-      one.row.rel_l2.push_back(difference.relative_l2);
-      one.row.max_error = std::max(one.row.max_error, difference.max);
-    }
-    one.row.edge_rel_l2 = oracle::compare(picture, truth, edges).relative_l2;
+    add_errors(one.row, picture_of(subject, one.scattered));
     result.rows.push_back(one.row);
   }
   return result;

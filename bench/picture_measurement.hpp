@@ -33,6 +33,7 @@ Subject load_subject(const std::filesystem::path& path, double mm_per_unit, cons
 
 struct PictureMeasurement {
   PictureRow exact;
+  PictureRow rule_2012;  ///< of which only loads and errors are known: the oracle has it
   std::vector<PictureRow> rows;
   double copy_ms = 0;
   std::vector<long> pixels;  ///< per material

@@ -46,6 +46,7 @@ nlohmann::ordered_json json_row(const PictureRow& row, const Subject& subject) {
           {"copy_ratio", row.copy_ratio},
           {"loads", row.loads},
           {"plan_ms", row.plan_ms},
+          {"scratch_mib", row.scratch_mib},
           {"rel_l2", errors},
           {"edge_rel_l2", row.edge_rel_l2},
           {"max_err", row.max_error}};
@@ -68,19 +69,22 @@ std::string table_of(const PictureMeasurement& measurement, const Subject& subje
       fmt::format("{}, {}x{}; {} ({}), {} threads, {} {}; a copy of four planes in and three out takes {:.2f} ms\n\n",
                   subject.name, subject.width, subject.height, processor_name(), device.name, device.compute_units,
                   device.platform, device.driver, measurement.copy_ms);
-  text += "| method | loads per pixel | time, ms (p10..p90) | x copy |";
+  text += "| method | loads per pixel | time, ms (p10..p90) | x copy | memory, MiB |";
   for (std::size_t i = 0; i < subject.material_names.size(); ++i) {
     text += fmt::format(" {} ({} px) |", subject.material_names[i], measurement.pixels[i]);
   }
   text += fmt::format(" within 3 px of edges ({} px) |", measurement.edge_pixels);
-  text += "\n|---|---|---|---|---|";
+  text += "\n|---|---|---|---|---|---|";
   for (std::size_t i = 0; i < subject.material_names.size(); ++i) text += "---|";
+  const PictureRow& rule = measurement.rule_2012;
+  text += fmt::format("\n| {} | {} | | | |{}", rule.what.name, rule.loads, errors_of(rule));
   for (const PictureRow& row : measurement.rows) {
-    text += fmt::format("\n| {} | {} | {:.1f} ({:.1f}..{:.1f}) | {:.1f} |{}", row.what.name, row.loads, row.ms,
-                        row.ms_p10, row.ms_p90, row.copy_ratio, errors_of(row));
+    text += fmt::format("\n| {} | {} | {:.1f} ({:.1f}..{:.1f}) | {:.1f} | {:.0f} |{}", row.what.name, row.loads, row.ms,
+                        row.ms_p10, row.ms_p90, row.copy_ratio, row.scratch_mib, errors_of(row));
   }
   const PictureRow& exact = measurement.exact;
-  text += fmt::format("\n| exact | all in reach | {:.0f} | {:.0f} |{}\n", exact.ms, exact.copy_ratio, errors_of(exact));
+  text += fmt::format("\n| exact | all in reach | {:.0f} | {:.0f} | {:.0f} |{}\n", exact.ms, exact.copy_ratio,
+                      exact.scratch_mib, errors_of(exact));
   return text;
 }
 

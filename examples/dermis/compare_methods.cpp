@@ -128,6 +128,11 @@ std::vector<MethodPicture> picture_methods(const Device& device, const std::vect
     say(name);
     pictures.push_back(by_plan(device, same_taps, frame, name, with(Method::separable, rank)));
   }
+  const std::string disc = "disc, 55 samples, prefiltered";
+  say(disc);
+  Options with_discs = with(Method::disc, 1);
+  with_discs.disc = {.samples = 55, .prefiltered = true};
+  pictures.push_back(by_plan(device, same_taps, frame, disc, with_discs));
   say("exact (takes the longest)");
   pictures.push_back(by_plan(device, same_taps, frame, "exact", with(Method::exact, 1)));
   return pictures;
@@ -166,7 +171,7 @@ void draw_methods(const char* argument, const std::filesystem::path& path, int w
     write_heatmap_png(map, width, height, error_map(picture.scattered, exact.scattered, where));
     lower += panel(numbers, map);
   }
-  constexpr int widest_px = 480;
+  constexpr int widest_px = 420;
   constexpr int title_px = 30;
   const int panel_px = std::clamp(width, 240, widest_px);
   const auto columns = static_cast<int>(pictures.size());

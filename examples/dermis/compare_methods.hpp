@@ -19,9 +19,9 @@ struct MethodPicture {
   std::vector<float> scattered;  ///< RGB: light after scattering; empty if it is not known
 };
 
-/// The frame as it is, by the rule of 2012, by the separable method of ranks 1 and 2 with 17 taps, and by the exact
-/// method. `frame` is `loaded`, of raw light and with albedo, with the beauty that is given besides; its outputs are
-/// not touched. `options` are those that hold for all. Says on stderr what it works on.
+/// The frame as it is, by the rule of 2012, by the separable method of ranks 1 and 2 with 17 taps, by discs of 55
+/// samples, and by the exact method. `frame` is `loaded`, of raw light and with albedo, with the beauty that is given
+/// besides; its outputs are not touched. `options` are those that hold for all. Says on stderr what it works on.
 std::vector<MethodPicture> picture_methods(const Device& device, const std::vector<Material>& materials,
                                            const Frame& frame, const LoadedFrame& loaded, std::vector<float> beauty,
                                            const Options& options);
