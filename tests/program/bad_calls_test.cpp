@@ -314,9 +314,10 @@ TEST_CASE("a role that is missing is an error that names it and lists the channe
   };
   check("DiffDir", "light", {});
   check("DiffCol", "albedo", {});
-  check("Depth", "depth", {"--focal-px", "100"});
   check("IndexMA", "material", {});
   check("Combined", "beauty", {"--preview", call.folder() / "p.png"});
+  PictureCopy(call.input()).without("ViewLayer.Depth").without("ViewLayer.Position").write(spoiled);
+  call.check_refuses_input(spoiled, 5, {"depth", "ViewLayer.Normal.X"}, {"--focal-px", "100"});
   call.check_refuses({"--role", "light=Nosuch"}, 5, {"Nosuch", "ViewLayer.DiffDir.R"});
   call.check_refuses({"--role", "light"}, 2, {"light"});
   call.check_refuses({"--role", "colour=ViewLayer.DiffDir"}, 2, {"colour"});

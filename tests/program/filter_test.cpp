@@ -221,7 +221,7 @@ TEST_CASE("methods are drawn side by side") {
   Words arguments = filter_arguments(scene, folder / "out.exr", {"--material", "1=skin", "--compare-methods", sheet});
   Words lit = arguments;
   lit.insert(lit.end(), {"--lighting", "lit"});
-  check_refused(lit, 2, {"--compare-methods", "--lighting lit", "raw"});
+  check_refused(run_program(lit), 2, {"--compare-methods", "--lighting lit", "raw"});
   if (std::system("command -v gnuplot >/dev/null 2>&1") != 0) return;
 
   // The path tracer's place is taken by the scene itself.
@@ -231,7 +231,7 @@ TEST_CASE("methods are drawn side by side") {
   REQUIRE(image);
   const OIIO::ImageSpec& spec = image->spec();
   std::vector<unsigned char> values(static_cast<std::size_t>(spec.width) * spec.height * spec.nchannels);
-  REQUIRE(image->read_image(OIIO::TypeDesc::UINT8, values.data()));
+  REQUIRE(image->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::UINT8, values.data()));
   // Error maps are black but where they are not, and the first one has the most light in it.
   const auto light_in = [&](int column) {
     double sum = 0;
