@@ -11,6 +11,13 @@ std::size_t bytes(const std::vector<Row>& rows) {
 
 }  // namespace
 
+cl::CommandQueue DeviceCache::queue(const Device& device) {
+  std::call_once(queue_made_, [&] {
+    queue_ = cl::CommandQueue(cl::Context(device.context(), true), cl::Device(device.id(), true));
+  });
+  return queue_;
+}
+
 std::size_t DeviceCache::bytes_of(const Taps& taps) {
   std::size_t sum = sizeof(Taps) + bytes(taps.terms) + bytes(taps.rungs);
   for (const Rung& rung : taps.rungs) {

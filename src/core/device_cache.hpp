@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <mutex>
 #include <string>
 
 #include "core/opencl.hpp"
@@ -29,7 +30,15 @@ struct DeviceCache {
   /// The designs with the ranks that were found for them.
   Recent<FitKey, TapsDesign> designs{1024, [](const TapsDesign&) { return 1; }};
 
+  /// A queue of the device, made when first asked for. It stays: PoCL 3.1 lets go of a command's event after it has
+  /// said that it is done, and then looks at the queue.
+  cl::CommandQueue queue(const Device& device);
+
   static std::size_t bytes_of(const Taps& taps);
+
+ private:
+  std::once_flag queue_made_;
+  cl::CommandQueue queue_;
 };
 
 /// That of a device and its copies.

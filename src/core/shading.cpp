@@ -6,6 +6,7 @@
 #include <numbers>
 #include <string>
 
+#include "core/device_cache.hpp"
 #include "core/highlight_tables.hpp"
 #include "core/light_tables.hpp"
 #include "core/pixel_stage.hpp"
@@ -100,7 +101,7 @@ void Shading::run(const ShadingFrame& frame) const {
   const cl_float4 viewer = viewer_of(frame.viewer);
   with_device_errors([&] {
     const cl::Context context(state_->device.context(), true);
-    const cl::CommandQueue queue(context, cl::Device(state_->device.id(), true));
+    const cl::CommandQueue queue = cache_of(state_->device).queue(state_->device);
     const ImageMemory memory(context, frame.width, frame.height, images);
     check_outputs(memory, images, {{light, -1}, {seen, albedo}, {specular, -1}, {beauty, -1}});
     const BoundLights lights(context, queue, state_->program, frame.lights);

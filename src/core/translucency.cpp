@@ -5,6 +5,7 @@
 #include <set>
 #include <string>
 
+#include "core/device_cache.hpp"
 #include "core/light_tables.hpp"
 #include "core/pixel_stage.hpp"
 #include "core/program.hpp"
@@ -132,7 +133,7 @@ void Translucency::run(const TranslucencyFrame& frame) const {
   make_light_params(frame.lights);  // what is wrong with them, before anything is done
   with_device_errors([&] {
     const cl::Context context(state_->device.context(), true);
-    const cl::CommandQueue queue(context, cl::Device(state_->device.id(), true));
+    const cl::CommandQueue queue = cache_of(state_->device).queue(state_->device);
     const ImageMemory memory(context, frame.width, frame.height, images);
     check_outputs(memory, images, {{lit, light}, {result, beauty}});
     const BoundLights lights(context, queue, state_->program, frame.lights);

@@ -51,7 +51,7 @@ struct Case {
         seen(width, height, 3, Format::f32, gaps ? &random : nullptr),
         specular(width, height, 3, Format::f32, gaps ? &random : nullptr),
         beauty(width, height, 3, Format::f32, gaps ? &random : nullptr),
-        sources(random_lights(random, random.integer(1, 4), gaps, true)),
+        sources(random_lights(random, width > 10 ? 4 : random.integer(1, 4), gaps, true)),
         options(random_options(random)) {
     if (random.coin()) {
       viewer = {Camera::Projection::orthographic, {random.uniform(-1, 1), random.uniform(-1, 1), -2}};
@@ -157,7 +157,7 @@ TEST_CASE("lit frames are those of the oracle", "[shading]") {
     }
   }
   CHECK(touched > 700);
-  CHECK(shining > 100);
+  CHECK(shining > 20);
   CAPTURE(loose, values);
   CHECK(loose < 0.05 * values);
 }
@@ -289,8 +289,11 @@ TEST_CASE("lit frames do not depend on how they are computed", "[shading]") {
   SECTION("run twice") { CHECK(run(device, its) == expected); }
 
   SECTION("any number of threads") {
-    for (int threads = 1; threads <= device.info().compute_units; ++threads)
-      CHECK(run(Device::open({}, threads), its) == expected);
+    std::vector<Device> devices;  // PoCL 3.1 may still look at the queue of one when its work is done
+    for (int threads = 1; threads <= device.info().compute_units; ++threads) {
+      devices.push_back(Device::open({}, threads));
+      CHECK(run(devices.back(), its) == expected);
+    }
   }
 
   SECTION("any strides") {

@@ -40,7 +40,7 @@ struct Case {
         light(width, height, 3, random.coin() ? Format::f32 : Format::f16, gaps ? &random : nullptr),
         material(width, height, 1, random.coin() ? Format::f32 : Format::u8, gaps ? &random : nullptr),
         lit(width, height, 3, Format::f32, gaps ? &random : nullptr),
-        sources(random_lights(random, random.integer(1, 4), gaps)) {
+        sources(random_lights(random, width > 10 ? 6 : random.integer(1, 4), gaps)) {
     Random* strides = gaps ? &random : nullptr;
     if (everything || random.coin()) mask.emplace(width, height, 1, Format::f32, strides);
     if (everything || random.coin()) thickness.emplace(width, height, 1, Format::f32, strides);
@@ -183,8 +183,11 @@ TEST_CASE("transmitted light does not depend on how it is computed", "[transluce
   SECTION("run twice") { CHECK(run(device, its) == expected); }
 
   SECTION("any number of threads") {
-    for (int threads = 1; threads <= device.info().compute_units; ++threads)
-      CHECK(run(Device::open({}, threads), its) == expected);
+    std::vector<Device> devices;  // PoCL 3.1 may still look at the queue of one when its work is done
+    for (int threads = 1; threads <= device.info().compute_units; ++threads) {
+      devices.push_back(Device::open({}, threads));
+      CHECK(run(devices.back(), its) == expected);
+    }
   }
 
   SECTION("any strides") {
