@@ -9,8 +9,8 @@
 // so that under constant light p = P light and q = Q light stay what they are. The lanes of a float16 are the pairs of
 // both functions in all channels: see STATES.
 #pragma OPENCL FP_CONTRACT OFF
-#include "texture.h"
 #include "decay.h"
+#include "texture.h"
 
 // No exponential counts as longer than 2^14 texels, so that float32 tells one texel's decay from none.
 #define LEAST_HALF_TEXEL 0x1p-15f
@@ -64,7 +64,8 @@ static inline State plus(const State s, const State t) {
 
 // What light adds over the length of a decay.
 static inline State gain(const Poles* poles, const Decay d, float16 light) {
-  const State result = {fma(d.b, poles->rest_q, 1.0f - d.a) * light, (fma(-d.c, poles->rest_q, poles->rest_q) - d.b) * light};
+  const State result = {fma(d.b, poles->rest_q, 1.0f - d.a) * light,
+                        (fma(-d.c, poles->rest_q, poles->rest_q) - d.b) * light};
   return result;
 }
 
@@ -221,18 +222,22 @@ static void scatter_lines(const struct TextureParams* t, int down, global const 
   const long along = down ? t->stride : 1;
   for (int n = first; n < min(first + lines_per_item, lines); ++n) {
     const size_t start = down ? texel_at(t, n, 0) : texel_at(t, 0, n);
-    const Line line = {source + start * source_size,
-                       target + start * target_size,
-                       along * source_size,
-                       along * target_size,
+    const Line line = {
+      source + start * source_size,
+      target + start * target_size,
+      along * source_size,
+      along * target_size,
 #if HAS_STRETCH
-                       stretch + (down ? byte_at(stretch_at, n, 0, 0) : byte_at(stretch_at, 0, n, 0)),
-                       down ? stretch_at->row_stride : stretch_at->pixel_stride,
-                       stretch_at->format,
+      stretch + (down ? byte_at(stretch_at, n, 0, 0) : byte_at(stretch_at, 0, n, 0)),
+      down ? stretch_at->row_stride : stretch_at->pixel_stride,
+      stretch_at->format,
 #else
-                       stretch, 0, 0,
+      stretch,
+      0,
+      0,
 #endif
-                       down};
+      down
+    };
     const int found = scatter_line(&poles, &line, length);
     if (found < 2) atomic_inc(counters + (found == 0 ? COUNTER_EMPTY_PARTS : COUNTER_UNLIT_PARTS));
   }

@@ -52,7 +52,8 @@ kernel void shade(int width, global const uchar* position, struct ImageParams po
     const Incident in = incident_at(lights + i, point);
     const float facing = dot_of(n, in.towards);
     if (!(facing > 0.0f) || in.strength == 0.0f) continue;
-    const float strength = in.strength * facing * visible(lights + i, maps, softness, point + offset * texel_at(lights + i, point) * n);
+    const float strength =
+        in.strength * facing * visible(lights + i, maps, softness, point + offset * texel_at(lights + i, point) * n);
     const vrgb white = same_rgb(1.0f);
     const vrgb its = scaled(lights[i].colour, white);
     diffuse = sum_rgb(diffuse, times(its, strength * (1.0f - reflected_at(&h, facing))));

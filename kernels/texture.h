@@ -8,9 +8,9 @@ typedef struct {
   struct ImageParams light_at, albedo_at, mask_at, stretch_u_at, stretch_v_at;
 } TextureImages;
 
-#define TEXTURE_IMAGES                                                                                            \
+#define TEXTURE_IMAGES                                                                                              \
   global const uchar *light, struct ImageParams light_at, global const uchar *albedo, struct ImageParams albedo_at, \
-      global const uchar *mask, struct ImageParams mask_at, global const uchar *stretch_u,                        \
+      global const uchar *mask, struct ImageParams mask_at, global const uchar *stretch_u,                          \
       struct ImageParams stretch_u_at, global const uchar *stretch_v, struct ImageParams stretch_v_at
 
 #define ITS_TEXTURE_IMAGES \

@@ -5,8 +5,7 @@
 #include "texture.h"
 
 // Texels of the run before and after each one, -1 before an empty one.
-kernel void texture_runs_u(struct TextureParams t, global const uchar* objects, global int* before,
-                           global int* after) {
+kernel void texture_runs_u(struct TextureParams t, global const uchar* objects, global int* before, global int* after) {
   const size_t row = texel_at(&t, 0, get_global_id(0));
   const int x_end = (t.width + V - 1) / V * V;  // lanes beyond the edge are empty
   int count = -1;
@@ -27,8 +26,7 @@ static inline vint count_on(vint count, global const uchar* objects) {
 
 static inline void store_ints(global int* p, vint value) { *(global vint*)p = value; }
 
-kernel void texture_runs_v(struct TextureParams t, global const uchar* objects, global int* before,
-                           global int* after) {
+kernel void texture_runs_v(struct TextureParams t, global const uchar* objects, global int* before, global int* after) {
   const int x = get_global_id(0) * V;
   vint count = (vint)(-1);
   for (int y = 0; y < t.height; ++y) {
@@ -212,15 +210,14 @@ static int is_lit(const struct TextureParams* t, const struct BlurParams* blur, 
   return 0;
 }
 
-// One pass of one level, along u, from the light or the last level into `between`, or along v from there into the level,
-// if `down`. `sum`: of the levels so far, to add this one to. The `lit` are as texture_prepare makes them, of each
-// channel of what is read and written.
+// One pass of one level, along u, from the light or the last level into `between`, or along v from there into the
+// level, if `down`. `sum`: of the levels so far, to add this one to. The `lit` are as texture_prepare makes them, of
+// each channel of what is read and written.
 kernel void texture_blur(struct TextureParams t, global const struct BlurParams* level, global const float* weights,
-                         int down, global const uchar* stretch, struct ImageParams stretch_at,
-                         global const int* before, global const int* after, global const float* finest,
-                         global const uchar* light_lit, global const float* light, global uchar* between_lit,
-                         global float* between, global uchar* last_lit, global float* last, global float* sum,
-                         global int* counters) {
+                         int down, global const uchar* stretch, struct ImageParams stretch_at, global const int* before,
+                         global const int* after, global const float* finest, global const uchar* light_lit,
+                         global const float* light, global uchar* between_lit, global float* between,
+                         global uchar* last_lit, global float* last, global float* sum, global int* counters) {
   const int block = get_global_id(1) * t.blocks_x + get_global_id(0);
   const size_t plane = plane_of(&t);
   const int x_begin = get_global_id(0) * BLOCK_WIDTH;
@@ -263,7 +260,8 @@ kernel void texture_blur(struct TextureParams t, global const struct BlurParams*
         store_floats(target + at, value);
         if (down) {
           global float* its_sum = sum + c * plane + at;
-          store_floats(its_sum, fma((vfloat)(blur.weight), value, blur.is_first ? (vfloat)(0.0f) : load_floats(its_sum)));
+          store_floats(its_sum,
+                       fma((vfloat)(blur.weight), value, blur.is_first ? (vfloat)(0.0f) : load_floats(its_sum)));
         }
       }
     }

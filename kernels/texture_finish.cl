@@ -5,12 +5,12 @@
 static inline vrgb load_scattered(global const float* scattered, size_t plane, size_t at) {
 #if RECURSIVE
   vrgb value;
-#define LOAD_LANE(lane)                                    \
-  {                                                        \
+#define LOAD_LANE(lane)                                      \
+  {                                                          \
     const float4 texel = vload4(at + (0x##lane), scattered); \
-    LANE(value.r, lane) = texel.x;                         \
-    LANE(value.g, lane) = texel.y;                         \
-    LANE(value.b, lane) = texel.z;                         \
+    LANE(value.r, lane) = texel.x;                           \
+    LANE(value.g, lane) = texel.y;                           \
+    LANE(value.b, lane) = texel.z;                           \
   }
   EACH_LANE(LOAD_LANE)
 #undef LOAD_LANE

@@ -7,9 +7,9 @@
 // One float4 per texel, whose w says whether it is of an object.
 static inline void store_texels(global float* light, size_t plane, size_t at, const Texels* texels) {
   const vfloat object = select((vfloat)(0.0f), (vfloat)(1.0f), texels->object);
-#define STORE_LANE(lane)                                                                               \
+#define STORE_LANE(lane)                                                                                  \
   vstore4((float4)(LANE(texels->light.r, lane), LANE(texels->light.g, lane), LANE(texels->light.b, lane), \
-                   LANE(object, lane)),                                                                \
+                   LANE(object, lane)),                                                                   \
           at + (0x##lane), light);
   EACH_LANE(STORE_LANE)
 #undef STORE_LANE
@@ -31,8 +31,8 @@ static inline float lowest_of(vfloat v) {
   return lowest;
 }
 
-// `objects`: 1 per texel of an object. `block_lit`, of each channel: 2 if some texel of a block has light, 1 if it has an
-// object, else 0. `finest`: the smallest stretches of its texels along u, then of all blocks along v, mm.
+// `objects`: 1 per texel of an object. `block_lit`, of each channel: 2 if some texel of a block has light, 1 if it has
+// an object, else 0. `finest`: the smallest stretches of its texels along u, then of all blocks along v, mm.
 kernel void texture_prepare(struct TextureParams t, TEXTURE_IMAGES, global float* light_out, global uchar* objects,
                             global uchar* block_lit, global float* finest, global int* counters) {
   const TextureImages in = ITS_TEXTURE_IMAGES;

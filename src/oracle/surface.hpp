@@ -22,9 +22,9 @@ struct SurfacePixel {
   bool wide_unsure = false;  ///< so close to half a pixel that a float32 device may decide otherwise
   double covered = 1;        ///< m, the share of the pixel that is of the material, above 0
   std::array<Bounded, 3> position_mm{};
-  std::array<Bounded, 2> footprint{};            ///< px per mm along x and y
-  std::array<Bounded, 3> width_factor{};         ///< k: the profile is R(r / k) / k^2
-  std::array<Bounded, 2> segment_mm{};           ///< length of surface that the pixel spans along either pass, times m^2
+  std::array<Bounded, 2> footprint{};     ///< px per mm along x and y
+  std::array<Bounded, 3> width_factor{};  ///< k: the profile is R(r / k) / k^2
+  std::array<Bounded, 2> segment_mm{};    ///< length of surface that the pixel spans along either pass, times m^2
   std::array<Bounded, 2> effective_footprint{};  ///< footprint times the widest channel's k, px per mm
 
   bool gives_light() const { return material >= 0 && !bad; }
