@@ -1,4 +1,5 @@
 // e^-x, the same to the bit for any number of lanes: PoCL's built-in function is not, and takes vectors lane by lane.
+#include "vector.h"
 
 // Adding it rounds to a whole number, which then stands in the lowest bits.
 #define ROUNDING 12582912.0f  // 3 2^22
