@@ -171,7 +171,7 @@ void draw_methods(const char* argument, const std::filesystem::path& path, int w
     write_heatmap_png(map, width, height, error_map(picture.scattered, exact.scattered, where));
     lower += panel(numbers, map);
   }
-  constexpr int widest_px = 420;
+  constexpr int widest_px = 480;
   constexpr int title_px = 30;
   const int panel_px = std::clamp(width, 240, widest_px);
   const auto columns = static_cast<int>(pictures.size());
