@@ -60,13 +60,12 @@ struct Running {
 
 constexpr int rule_2012_taps = 25;
 
-/// Taps reach 3 mm for skin, a third of the radius of its kernel.
 oracle::Picture by_rule_2012(const Subject& subject) {
   std::vector<oracle::SliceMaterial> slices;
   for (const Material& material : subject.materials) {
     const Profile& profile = material.profile;
     slices.push_back({material.id, [&profile](int channel, double r_mm) { return profile.radial(channel, r_mm); },
-                      profile.half_width(profile.widest_channel(), 0.999) / 3});
+                      profile.half_width(profile.widest_channel(), 0.999)});
   }
   std::vector<float> none;
   return oracle::rule_2012(subject.frame(none), slices, rule_2012_taps);

@@ -36,13 +36,12 @@ MethodPicture by_plan(const Device& device, const std::vector<Material>& materia
   return picture;
 }
 
-/// Skin's 3 mm of the rule are a third of the radius of its kernel.
 std::vector<oracle::SliceMaterial> slice_materials(const std::vector<Material>& materials) {
   std::vector<oracle::SliceMaterial> slices;
   for (const Material& material : materials) {
     const Profile& profile = material.profile;
     slices.push_back({material.id, [profile](int channel, double r_mm) { return profile.radial(channel, r_mm); },
-                      kernel_radius_mm(profile) / 3});
+                      kernel_radius_mm(profile)});
   }
   return slices;
 }

@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdio>
@@ -28,6 +27,7 @@
 #include "lights_file.hpp"
 #include "loaded_frame.hpp"
 #include "output_file.hpp"
+#include "pass_channels.hpp"
 #include "picture_png.hpp"
 #include "profile_argument.hpp"
 #include "progress_bar.hpp"
@@ -82,11 +82,6 @@ std::vector<std::string> beauty_channels(const exr::Roles& roles) {
     throw Error(ErrorCode::usage, "--role beauty", fmt::format("{} groups of channels", sum.size()),
                 "one group of three, for the result takes its place");
   return sum.front();
-}
-
-std::array<std::string, 3> scattered_channels(const exr::Roles& roles) {
-  const std::string prefix = roles.layer.empty() ? "sss." : roles.layer + ".sss.";
-  return {prefix + "R", prefix + "G", prefix + "B"};
 }
 
 /// None if the pixels are nowhere, or of a size that taps cannot be made for.
@@ -257,7 +252,7 @@ Input read_input(const FilterArguments& arguments, const std::vector<NamedProfil
 /// The frame: what was loaded, and the results in the picture's own pixels.
 Frame frame_of(Input& input, const StatsReport& report, double mm_per_unit) {
   const std::vector<std::string> beauty = beauty_channels(report.roles);
-  const std::array<std::string, 3> scattered = scattered_channels(report.roles);
+  const std::vector<std::string> scattered = channels_of_pass(report.roles, "sss");
   if (!beauty.empty() && input.picture.find(scattered.front()) != nullptr) {
     fmt::print(stderr,
                "dermis: warning: {} is there already; if the beauty holds scattered light, it is scattered again\n",

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -14,7 +13,9 @@
 #include "dermis/exr.hpp"
 #include "dermis/texture.hpp"
 #include "dermis/version.hpp"
+#include "loaded_frame.hpp"
 #include "output_file.hpp"
+#include "pass_channels.hpp"
 #include "profile_argument.hpp"
 #include "stopwatch.hpp"
 
@@ -74,16 +75,13 @@ struct LoadedTexture {
   std::string stretch_source;
 
   TextureFrame frame(const exr::Picture& picture) const {
-    const auto image = [](const std::vector<float>& values) {
-      return Image{.host = values.empty() ? nullptr : values.data()};
-    };
     return {.width = picture.width(),
             .height = picture.height(),
-            .light = image(light),
-            .albedo = image(albedo),
-            .mask = image(mask),
-            .stretch_u = image(stretch.u),
-            .stretch_v = image(stretch.v)};
+            .light = image_of(light),
+            .albedo = image_of(albedo),
+            .mask = image_of(mask),
+            .stretch_u = image_of(stretch.u),
+            .stretch_v = image_of(stretch.v)};
   }
 };
 
@@ -109,8 +107,7 @@ void load_stretch(const FilterArguments& arguments, const exr::Picture& picture,
                   "it, --role stretch_u and stretch_v, or a position map and --mm-per-unit");
     exr::require(picture, roles, Role::position);
     const std::vector<float> positions = exr::load(picture, roles, Role::position);
-    const Image mask{.host = loaded.mask.empty() ? nullptr : loaded.mask.data()};
-    loaded.stretch = stretch_of_positions(picture.width(), picture.height(), {.host = positions.data()}, mask,
+    loaded.stretch = stretch_of_positions(picture.width(), picture.height(), image_of(positions), image_of(loaded.mask),
                                           *arguments.picture.mm_per_unit);
     loaded.stretch_source = "positions";
   }
@@ -126,11 +123,6 @@ LoadedTexture load_texture(const FilterArguments& arguments, const exr::Picture&
                        {}};
   load_stretch(arguments, picture, roles, loaded);
   return loaded;
-}
-
-std::array<std::string, 3> channels_of(const exr::Roles& roles, const char* name) {
-  const std::string prefix = roles.layer.empty() ? name : roles.layer + "." + name;
-  return {prefix + ".R", prefix + ".G", prefix + ".B"};
 }
 
 std::string command_text_of_texture(const FilterArguments& arguments) {
@@ -182,8 +174,8 @@ void filter_texture(const FilterArguments& arguments, const Profile& profile, st
   exr::Picture picture = exr::Picture::read(arguments.picture.path);
   const exr::Roles roles = exr::find_roles(picture, arguments.picture.roles, arguments.picture.layer);
   const LoadedTexture loaded = load_texture(arguments, picture, roles);
-  const std::array<std::string, 3> scattered = channels_of(roles, "sss");
-  const std::array<std::string, 3> result = channels_of(roles, "sss_albedo");
+  const std::vector<std::string> scattered = channels_of_pass(roles, "sss");
+  const std::vector<std::string> result = channels_of_pass(roles, "sss_albedo");
   picture.add_channels(scattered, Format::f32);
   if (!loaded.albedo.empty()) picture.add_channels(result, Format::f32);
   TextureFrame frame = loaded.frame(picture);

@@ -19,6 +19,7 @@
 #include "lights_file.hpp"
 #include "number_argument.hpp"
 #include "output_file.hpp"
+#include "pass_channels.hpp"
 #include "picture_arguments.hpp"
 #include "word_argument.hpp"
 
@@ -54,8 +55,7 @@ Viewer viewer_of(const LightArguments& arguments, const exr::Picture& picture, c
 /// The channels that take the light of a role: those that have it, or new ones of that name in the layer.
 std::vector<std::string> channels_for(exr::Picture& picture, const exr::Roles& roles, Role role, const char* name) {
   if (roles.has(role) && roles[role].front().size() == 3) return roles[role].front();
-  const std::string prefix = roles.layer.empty() ? name : roles.layer + "." + name;
-  std::vector<std::string> channels = {prefix + ".R", prefix + ".G", prefix + ".B"};
+  std::vector<std::string> channels = channels_of_pass(roles, name);
   picture.add_channels(channels, Format::f32);
   return channels;
 }

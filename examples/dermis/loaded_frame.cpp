@@ -26,8 +26,6 @@ std::vector<float> load_values(const exr::Picture& picture, const exr::Roles& ro
   return checked(exr::load(picture, roles, role), picture, role, channels);
 }
 
-Image image_of(const std::vector<float>& values) { return {.host = values.empty() ? nullptr : values.data()}; }
-
 }  // namespace
 
 Frame LoadedFrame::frame() const {

@@ -10,6 +10,9 @@
 
 namespace dermis::program {
 
+/// A view of packed values; no image if there are none.
+inline Image image_of(const std::vector<float>& values) { return {.host = values.empty() ? nullptr : values.data()}; }
+
 struct LoadedFrame {
   int width = 0;
   int height = 0;

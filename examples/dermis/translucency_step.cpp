@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "dermis/error.hpp"
+#include "loaded_frame.hpp"
 #include "number_argument.hpp"
 
 namespace dermis::program {
@@ -15,8 +16,6 @@ using exr::Role;
 CLI::Validator number_from_0(const char* what) {
   return real_number([](double value) { return value >= 0; }, fmt::format("{}, a finite number >= 0", what));
 }
-
-Image image_of(const std::vector<float>& values) { return {.host = values.empty() ? nullptr : values.data()}; }
 
 }  // namespace
 

@@ -35,7 +35,7 @@ class BoundLights {
 template <class Row>
 cl::Buffer upload_rows(const cl::Context& context, std::vector<Row> rows) {
   if (rows.empty()) rows.emplace_back();
-  return {context, CL_MEM_READ_ONLY | CL_MEM_COPY_HOST_PTR, rows.size() * sizeof(Row), rows.data()};
+  return upload(context, rows);
 }
 
 }  // namespace dermis

@@ -1,4 +1,4 @@
-// The OpenCL C++ bindings, version 1.2, and how their errors become ours.
+// The OpenCL C++ bindings, version 1.2, how their errors become ours, and what is said with them in many places.
 #pragma once
 
 #define CL_HPP_TARGET_OPENCL_VERSION 120
@@ -6,8 +6,10 @@
 #define CL_HPP_ENABLE_EXCEPTIONS
 #define CL_TARGET_OPENCL_VERSION 120
 #include <CL/opencl.hpp>
+#include <span>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "dermis/error.hpp"
 
@@ -21,6 +23,34 @@ auto with_device_errors(Work&& work) {
   } catch (const cl::Error& error) {
     throw Error(ErrorCode::device, error.what(), "OpenCL error " + std::to_string(error.err()), "success");
   }
+}
+
+/// All arguments of a kernel, in their order.
+template <class... Arguments>
+void set_arguments(cl::Kernel& kernel, const Arguments&... arguments) {
+  cl_uint index = 0;
+  (kernel.setArg(index++, arguments), ...);
+}
+
+/// A buffer that kernels only read, with these rows in it.
+template <class Row>
+cl::Buffer upload(const cl::Context& context, std::span<const Row> rows) {
+  return {context, CL_MEM_READ_ONLY | CL_MEM_COPY_HOST_PTR, rows.size_bytes(), const_cast<Row*>(rows.data())};
+}
+
+template <class Row>
+cl::Buffer upload(const cl::Context& context, const std::vector<Row>& rows) {
+  return upload(context, std::span<const Row>(rows));
+}
+
+/// How long the device worked on commands of a queue that measures times.
+inline double milliseconds(const std::vector<cl::Event>& events) {
+  double sum = 0;
+  for (const cl::Event& event : events) {
+    const auto start = event.getProfilingInfo<CL_PROFILING_COMMAND_START>();
+    sum += static_cast<double>(event.getProfilingInfo<CL_PROFILING_COMMAND_END>() - start) * 1e-6;
+  }
+  return sum;
 }
 
 }  // namespace dermis

@@ -17,12 +17,6 @@ namespace {
 
 constexpr int rows_per_step_px = 16;  ///< of a method that takes long
 
-template <class... Arguments>
-void set_arguments(cl::Kernel& kernel, const Arguments&... arguments) {
-  cl_uint index = 0;
-  (kernel.setArg(index++, arguments), ...);
-}
-
 params::FrameParams frame_params(const Frame& frame, const Options& options, const RunSizes& sizes) {
   const Camera& camera = frame.camera;
   const bool perspective = camera.projection == Camera::Projection::perspective;

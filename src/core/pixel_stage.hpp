@@ -13,17 +13,12 @@ namespace dermis {
 
 inline std::string scalar_build_options() { return "-cl-std=CL1.2 -DV=1"; }
 
-inline std::string build_constant(const char* name, int value) {
-  return std::string(" -D") + name + "=" + std::to_string(value);
-}
-
 /// Launches a kernel over all pixels.
 template <class... Arguments>
 void run_per_pixel(const cl::CommandQueue& queue, const cl::Program& program, const char* kernel_name, int width,
                    int height, const Arguments&... arguments) {
   cl::Kernel kernel(program, kernel_name);
-  cl_uint index = 0;
-  (kernel.setArg(index++, arguments), ...);
+  set_arguments(kernel, arguments...);
   queue.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(width, height));
 }
 

@@ -4,10 +4,10 @@
 #include <array>
 #include <chrono>
 #include <future>
-#include <set>
 #include <sstream>
 #include <string>
 
+#include "core/check_materials.hpp"
 #include "core/disc_tables.hpp"
 #include "core/frame_images.hpp"
 #include "core/material_tables.hpp"
@@ -54,30 +54,11 @@ void check_designs(const std::vector<Material>& materials, const Options& option
   }
 }
 
-void check_materials(const std::vector<Material>& materials, const FrameDescription& frames, const Options& options) {
-  const std::string count = std::to_string(materials.size());
-  if (frames.material && (materials.empty() || materials.size() > MAX_MATERIALS)) {
-    throw Error(ErrorCode::usage, "materials", count, "1.." + std::to_string(MAX_MATERIALS));
-  }
-  if (!frames.material && materials.size() != 1) {
-    throw Error(ErrorCode::usage, "materials", count, "exactly 1, as the frames have no material ids");
-  }
-  std::set<int> ids;
-  for (const Material& material : materials) {
-    if (frames.material && (material.id < 0 || material.id > 65535 || !ids.insert(material.id).second)) {
-      throw Error(ErrorCode::usage, "material id", std::to_string(material.id), "different ids in 0..65535");
-    }
-    if (material.profile.width_follows_albedo() && !frames.albedo) {
-      throw Error(ErrorCode::role_missing, "albedo", "no image",
-                  "an albedo image, which a profile takes its width from");
-    }
-  }
+void check_albedo_mix(const FrameDescription& frames, const Options& options) {
   if (options.albedo_mix > 0 && !frames.albedo) {
     throw Error(ErrorCode::role_missing, "albedo", "no image", "an albedo image for albedo_mix above 0");
   }
 }
-
-std::string define(const char* name, int value) { return std::string(" -D") + name + "=" + std::to_string(value); }
 
 /// What all kernels are built with.
 std::string common_options(const Plan::State& state, int materials) {
@@ -85,11 +66,12 @@ std::string common_options(const Plan::State& state, int materials) {
   std::ostringstream bounds;
   bounds << std::scientific << " -DFLATNESS=" << Taps::flatness << "f -DSMOOTHNESS=" << Taps::smoothness
          << "f -DMOST_STRETCH=" << Taps::most_stretch << "f -DMOST_SKEW=" << Taps::most_skew << "f";
-  return "-cl-std=CL1.2" + define("MATERIALS", materials) + define("HAS_DEPTH", frames.depth ? 1 : 0) +
-         define("HAS_MATERIAL", frames.material ? 1 : 0) + define("HAS_MASK", frames.mask ? 1 : 0) +
-         define("HAS_ALBEDO", frames.albedo ? 1 : 0) + define("HAS_MATTE", frames.matte ? 1 : 0) +
-         define("PIXEL_WIDTH", state.has_pixel_width ? 1 : 0) + define("JITTER", state.options.jitter > 0 ? 1 : 0) +
-         define("SHEARED", state.is_sheared ? 1 : 0) + bounds.str();
+  return "-cl-std=CL1.2" + build_constant("MATERIALS", materials) + build_constant("HAS_DEPTH", frames.depth ? 1 : 0) +
+         build_constant("HAS_MATERIAL", frames.material ? 1 : 0) + build_constant("HAS_MASK", frames.mask ? 1 : 0) +
+         build_constant("HAS_ALBEDO", frames.albedo ? 1 : 0) + build_constant("HAS_MATTE", frames.matte ? 1 : 0) +
+         build_constant("PIXEL_WIDTH", state.has_pixel_width ? 1 : 0) +
+         build_constant("JITTER", state.options.jitter > 0 ? 1 : 0) +
+         build_constant("SHEARED", state.is_sheared ? 1 : 0) + bounds.str();
 }
 
 /// Samples of a disc lie anywhere, so that its pixels are computed one by one.
@@ -115,7 +97,7 @@ std::vector<std::string> files_of(Method method) {
 }
 
 cl::Program build_classification(const Plan::State& state) {
-  return build_program(state.device, {"survey.cl"}, state.build_options + define("V", CELL));
+  return build_program(state.device, {"survey.cl"}, state.build_options + build_constant("V", CELL));
 }
 
 /// The passes, and the classification too if they are in one program.
@@ -128,29 +110,13 @@ cl::Program build_passes(const Plan::State& state) {
   }
   if (is_one_program(state)) files.emplace_back("survey.cl");
   return build_program(state.device, files,
-                       state.build_options + define("V", vector_width(state)) +
-                           define("TERMS", state.terms_per_material) + define("TILED", state.tiled ? 1 : 0) +
-                           define("LIT", state.options.lighting == Lighting::lit ? 1 : 0) +
-                           define("TANGENT_DISC", state.options.disc.tangent_plane ? 1 : 0) +
-                           define("HAS_NORMAL", state.description.normal ? 1 : 0) +
-                           define("TABLE_SHIFT", 23 - log2_nodes_per_octave_of_exact));
-}
-
-template <class Row>
-cl::Buffer upload(const cl::Context& context, const std::vector<Row>& rows) {
-  return {context, CL_MEM_READ_ONLY | CL_MEM_COPY_HOST_PTR, rows.size() * sizeof(Row), const_cast<Row*>(rows.data())};
-}
-
-double milliseconds(const cl::Event& event) {
-  const auto start = event.getProfilingInfo<CL_PROFILING_COMMAND_START>();
-  const auto end = event.getProfilingInfo<CL_PROFILING_COMMAND_END>();
-  return static_cast<double>(end - start) * 1e-6;
-}
-
-double milliseconds(const std::vector<cl::Event>& events) {
-  double sum = 0;
-  for (const cl::Event& event : events) sum += milliseconds(event);
-  return sum;
+                       state.build_options + build_constant("V", vector_width(state)) +
+                           build_constant("TERMS", state.terms_per_material) +
+                           build_constant("TILED", state.tiled ? 1 : 0) +
+                           build_constant("LIT", state.options.lighting == Lighting::lit ? 1 : 0) +
+                           build_constant("TANGENT_DISC", state.options.disc.tangent_plane ? 1 : 0) +
+                           build_constant("HAS_NORMAL", state.description.normal ? 1 : 0) +
+                           build_constant("TABLE_SHIFT", 23 - log2_nodes_per_octave_of_exact));
 }
 
 /// Runs a plan on one black pixel. PoCL compiles a kernel when it is first launched, for the size of its
@@ -196,15 +162,14 @@ void Event::wait() const {
 Plan::Plan(const Device& device, std::vector<Material> materials, const FrameDescription& frames,
            const Options& options) {
   check_options(options);
-  check_materials(materials, frames, options);
+  check_materials(materials, frames.material, frames.albedo);
+  check_albedo_mix(frames, options);
   check_designs(materials, options);
   check_disc(options.disc);
-  const bool follows_albedo = std::any_of(materials.begin(), materials.end(),
-                                          [](const Material& m) { return m.profile.width_follows_albedo(); });
   auto state = std::make_unique<State>(device);
   state->description = frames;
   state->options = options;
-  state->has_pixel_width = frames.mask || follows_albedo;
+  state->has_pixel_width = frames.mask || any_follows_albedo(materials);
   state->is_sheared = frames.depth && options.sheared && options.jitter == 0;
   state->item_is_pixel = device.info().type == "GPU";
   state->tiled = !state->item_is_pixel && options.method == Method::separable;

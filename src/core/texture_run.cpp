@@ -8,12 +8,6 @@ namespace dermis {
 
 namespace {
 
-template <class... Arguments>
-void set_arguments(cl::Kernel& kernel, const Arguments&... arguments) {
-  cl_uint index = 0;
-  (kernel.setArg(index++, arguments), ...);
-}
-
 int parts(int whole, int part) { return (whole + part - 1) / part; }
 
 params::TextureParams texture_params(const TexturePlan::State& plan, const TextureFrame& frame,
@@ -27,20 +21,6 @@ params::TextureParams texture_params(const TexturePlan::State& plan, const Textu
   p.mm_per_texel = static_cast<float>(frame.mm_per_texel);
   p.albedo_mix = static_cast<float>(plan.options.albedo_mix);
   return p;
-}
-
-double milliseconds(const std::vector<cl::Event>& events) {
-  double sum = 0;
-  for (const cl::Event& event : events) {
-    const auto start = event.getProfilingInfo<CL_PROFILING_COMMAND_START>();
-    sum += static_cast<double>(event.getProfilingInfo<CL_PROFILING_COMMAND_END>() - start) * 1e-6;
-  }
-  return sum;
-}
-
-template <class Row>
-cl::Buffer upload(const cl::Context& context, const Row* rows, std::size_t count) {
-  return {context, CL_MEM_READ_ONLY | CL_MEM_COPY_HOST_PTR, count * sizeof(Row), const_cast<Row*>(rows)};
 }
 
 }  // namespace
@@ -123,9 +103,9 @@ void TextureRun::scatter() {
 void TextureRun::blur() {
   const double mm_per_texel = plan_.description.stretch ? 0 : static_cast<double>(params_.mm_per_texel);
   const BlurTables tables = make_blur_tables(plan_.chain, mm_per_texel);
-  const cl::Buffer weights = upload(context_, tables.weights.data(), tables.weights.size());
+  const cl::Buffer weights = upload(context_, tables.weights);
   for (std::size_t k = 0; k < tables.blurs.size() / 3; ++k) {
-    const cl::Buffer level = upload(context_, tables.blurs.data() + 3 * k, 3);
+    const cl::Buffer level = upload(context_, std::span(tables.blurs).subspan(3 * k, 3));
     for (const int down : {0, 1}) {
       const TextureImage stretch = down == 0 ? TextureImage::stretch_u : TextureImage::stretch_v;
       cl::Kernel kernel(plan_.pass_program, "texture_blur");
@@ -144,7 +124,7 @@ void TextureRun::recurse() {
   const std::array<params::PoleParams, 2> tables = make_pole_tables(plan_.recursion, mm_per_texel);
   const int lines_per_item = plan_.device.info().type == "GPU" ? 1 : 8;
   for (const int down : {0, 1}) {
-    const cl::Buffer poles = upload(context_, &tables[down], 1);
+    const cl::Buffer poles = upload(context_, std::span(tables).subspan(down, 1));
     const TextureImage stretch = down == 0 ? TextureImage::stretch_u : TextureImage::stretch_v;
     const int lines = down == 0 ? params_.height : params_.width;
     cl::Kernel kernel(plan_.pass_program, down == 0 ? "recurse_u" : "recurse_v");

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <set>
 #include <string>
 
+#include "core/check_materials.hpp"
 #include "core/device_cache.hpp"
 #include "core/light_tables.hpp"
 #include "core/pixel_stage.hpp"
@@ -29,33 +29,10 @@ void check_options(const TranslucencyOptions& options) {
   check_range("softness_texels", options.softness_texels, 0, 16, "0..16 texels");
 }
 
-void check_materials(const std::vector<Material>& materials, const TranslucencyDescription& frames,
-                     const TranslucencyOptions& options) {
-  const std::string count = std::to_string(materials.size());
-  if (frames.material && (materials.empty() || materials.size() > MAX_MATERIALS)) {
-    throw Error(ErrorCode::usage, "materials", count, "1.." + std::to_string(MAX_MATERIALS));
-  }
-  if (!frames.material && materials.size() != 1) {
-    throw Error(ErrorCode::usage, "materials", count, "exactly 1, as the frames have no material ids");
-  }
-  std::set<int> ids;
-  for (const Material& its : materials) {
-    if (frames.material && (its.id < 0 || its.id > 65535 || !ids.insert(its.id).second)) {
-      throw Error(ErrorCode::usage, "material id", std::to_string(its.id), "different ids in 0..65535");
-    }
-    if (its.profile.width_follows_albedo() && !frames.albedo) {
-      throw Error(ErrorCode::role_missing, "albedo", "no image",
-                  "an albedo image, which a profile takes its width from");
-    }
-  }
+void check_lighting(const TranslucencyDescription& frames, const TranslucencyOptions& options) {
   if (options.lighting == Lighting::lit && !frames.albedo) {
     throw Error(ErrorCode::role_missing, "albedo", "no image", "an albedo image, as the light has the albedo in it");
   }
-}
-
-bool follow_albedo(const std::vector<Material>& materials) {
-  return std::any_of(materials.begin(), materials.end(),
-                     [](const Material& its) { return its.profile.width_follows_albedo(); });
 }
 
 Images check_images(const TranslucencyFrame& frame, const TranslucencyDescription& description) {
@@ -107,12 +84,13 @@ struct Translucency::State {
 Translucency::Translucency(const Device& device, const std::vector<Material>& materials,
                            const TranslucencyDescription& frames, const TranslucencyOptions& options) {
   check_options(options);
-  check_materials(materials, frames, options);
+  check_materials(materials, frames.material, frames.albedo);
+  check_lighting(frames, options);
   const std::string constants =
       scalar_build_options() + build_constant("MATERIALS", static_cast<int>(materials.size())) +
       build_constant("HAS_ALBEDO", frames.albedo ? 1 : 0) + build_constant("HAS_MATERIAL", frames.material ? 1 : 0) +
       build_constant("HAS_MASK", frames.mask ? 1 : 0) + build_constant("HAS_THICKNESS", frames.thickness ? 1 : 0) +
-      build_constant("PIXEL_WIDTH", frames.mask || follow_albedo(materials) ? 1 : 0) +
+      build_constant("PIXEL_WIDTH", frames.mask || any_follows_albedo(materials) ? 1 : 0) +
       build_constant("LIT", options.lighting == Lighting::lit ? 1 : 0) +
       build_constant("TABLE_SHIFT", 23 - log2_nodes_per_octave_of_slabs);
   const SlabTables tables = make_slab_tables(materials);

@@ -7,19 +7,15 @@
 #include <random>
 #include <vector>
 
+#include "exr/robust.hpp"
+
 namespace dermis::exr {
 namespace {
 
 using Projection = Camera::Projection;
 
 constexpr std::size_t fewest_points = 16;
-constexpr int most_refits = 30;
-// Starts from so many points at random, of which one start without a false point is enough: all 64 have one in less
-// than a case of 10^8 if a fifth of the points is false, and in a third of the cases if half of them are.
-constexpr int starts = 64;
 constexpr std::size_t points_of_start = 6;
-constexpr std::size_t points_to_judge_start = 500;
-constexpr double off_px = 1.0;               // a point farther off than this is left out
 constexpr double largest_rms_px = 0.5;       // half a pixel: a position may be anywhere in its pixel
 constexpr double smallest_share = 0.5;       // of the points that must be kept
 constexpr double largest_skew = 0.01;        // cosine between axes that should be perpendicular
@@ -32,12 +28,6 @@ std::string text_of(double value) {
   std::array<char, 32> buffer;
   std::snprintf(buffer.data(), buffer.size(), "%.3g", value);
   return buffer.data();
-}
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 /// Pixel coordinates from -1 to 1, depth in medians, positions from their middle: what makes the fit well conditioned
@@ -132,16 +122,6 @@ Axes axes_of(Projection projection, const Solution& solution, const Scale& scale
 
 double cosine(const Eigen::Vector3d& a, const Eigen::Vector3d& b) { return std::abs(a.dot(b)) / (a.norm() * b.norm()); }
 
-/// Indices of at most `count` out of `n` points, evenly spread.
-std::vector<Eigen::Index> spread(std::size_t n, std::size_t count) {
-  std::vector<Eigen::Index> out;
-  const std::size_t step = (n + count - 1) / count;
-  for (std::size_t i = 0; i < n; i += step) {
-    out.push_back(static_cast<Eigen::Index>(i));
-  }
-  return out;
-}
-
 /// Fits, looks which points are off, and fits again without them.
 class Fitting {
  public:
@@ -177,9 +157,7 @@ class Fitting {
     const double unit = projection_ == Projection::perspective ? scale_.depth * axes.pixel() : axes.pixel();
     const Eigen::VectorXd errors = (system.target - system.design * solution.coefficients).rowwise().norm() / unit;
     std::vector<double> out(errors.begin(), errors.end());
-    // A fit to points that lie on a line may give NaNs, which have no order.
-    std::replace_if(
-        out.begin(), out.end(), [](double error) { return std::isnan(error); }, HUGE_VAL);
+    std::transform(out.begin(), out.end(), out.begin(), error_or_huge);
     return out;
   }
 
@@ -206,10 +184,9 @@ class Fitting {
     return best;
   }
 
-  /// The points within a pixel; while the fit is still bent by false ones, those within twice the median. Never too few
-  /// to fit.
+  /// The points that are not off. Never too few to fit.
   std::vector<Eigen::Index> within_limit(const std::vector<double>& errors) const {
-    const double limit = std::max(off_px, 2 * median(errors));
+    const double limit = limit_px(errors);
     std::vector<Eigen::Index> kept;
     for (std::size_t i = 0; i < errors.size(); ++i) {
       if (errors[i] <= limit) {

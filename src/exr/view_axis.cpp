@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "exr/robust.hpp"
+
 namespace dermis::exr {
 namespace {
 
@@ -15,18 +17,8 @@ using Matrix34 = Eigen::Matrix<double, 3, 4>;
 using Rows = std::vector<Eigen::Index>;
 
 constexpr Eigen::Index points_of_start = 8;  // six determine a camera
-constexpr int starts = 64;                   // as in camera_fit.cpp
-constexpr Eigen::Index judges_of_start = 500;
-constexpr int most_refits = 30;
-constexpr Eigen::Index most_fitted = 20000;
-constexpr double off_px = 1.0;
+constexpr std::size_t most_fitted = 20000;
 constexpr double relief_over_noise = 30;
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 /// Points (X, 1) about their middle and pixels, both with a spread of about 1: what makes the fit well conditioned
 /// (Hartley 1997).
@@ -63,13 +55,6 @@ Normalised normalised(std::span<const SeenPoint> points) {
   out.pixel_px = std::max(out.pixel.cwiseAbs().maxCoeff(), 0.5);
   out.pixel /= out.pixel_px;
   return out;
-}
-
-Rows spread(Eigen::Index n, Eigen::Index count) {
-  Rows rows;
-  const Eigen::Index step = (n + count - 1) / count;
-  for (Eigen::Index i = 0; i < n; i += step) rows.push_back(i);
-  return rows;
 }
 
 /// A camera matrix, pixel ~ M (X, 1), and how well the points determine it.
@@ -126,22 +111,21 @@ std::vector<double> errors_px(const Normalised& all, const Rows& rows, const Mat
   for (const Eigen::Index i : rows) {
     const Eigen::Vector3d seen = matrix * all.point.row(i).transpose();
     const double error = (seen.head<2>() / seen(2) - all.pixel.row(i).transpose()).norm() * all.pixel_px;
-    errors.push_back(std::isfinite(error) ? error : HUGE_VAL);
+    errors.push_back(error_or_huge(error));
   }
   return errors;
 }
 
 /// The fit to few points, or to all, with the least median error: false points would bend a fit to all.
 Solution best_start(Projection projection, const Normalised& all) {
-  const Eigen::Index n = all.point.rows();
-  const Rows judges = spread(n, judges_of_start);
+  const auto n = static_cast<std::size_t>(all.point.rows());
+  const Rows judges = spread(n, points_to_judge_start);
   Solution best = solve(projection, all, spread(n, most_fitted), Matrix34::Zero());
   double least = median(errors_px(all, judges, best.matrix));
   std::minstd_rand random;  // the same numbers in every run
   for (int i = 0; i < starts; ++i) {
     Rows few;
-    for (Eigen::Index k = 0; k < points_of_start; ++k)
-      few.push_back(static_cast<Eigen::Index>(random() % static_cast<unsigned>(n)));
+    for (Eigen::Index k = 0; k < points_of_start; ++k) few.push_back(static_cast<Eigen::Index>(random() % n));
     const Solution solution = solve(projection, all, few, Matrix34::Zero());
     const double error = median(errors_px(all, judges, solution.matrix));
     if (error < least) {
@@ -153,11 +137,11 @@ Solution best_start(Projection projection, const Normalised& all) {
 }
 
 Solution without_false_points(Projection projection, const Normalised& all) {
-  const Rows every = spread(all.point.rows(), most_fitted);
+  const Rows every = spread(static_cast<std::size_t>(all.point.rows()), most_fitted);
   Solution solution = best_start(projection, all);
   for (int i = 0; i < most_refits; ++i) {
     const std::vector<double> errors = errors_px(all, every, solution.matrix);
-    const double limit = std::max(off_px, 2 * median(errors));
+    const double limit = limit_px(errors);
     Rows within;
     for (std::size_t k = 0; k < every.size(); ++k)
       if (errors[k] <= limit) within.push_back(every[k]);

@@ -17,13 +17,15 @@ namespace {
 constexpr double background_depth = 1e9;  // scene units, see Frame
 constexpr double mix_over_reach = 4;      // 12 mm of depth for a reach of 3 mm, with the lens of the authors' demo
 
+double reach_mm(const SliceMaterial& material) { return material.radius_mm / 3; }
+
 struct SliceTap {
   double offset_mm;
   std::array<double, 3> weight;
 };
 
 std::vector<SliceTap> slice_taps(const SliceMaterial& material, int count) {
-  const double reach = material.reach_mm;
+  const double reach = reach_mm(material);
   std::vector<SliceTap> taps(count);
   for (int i = 0; i < count; ++i) {
     const double even = 2.0 * i / (count - 1) - 1;
@@ -50,7 +52,7 @@ class Rule {
       : frame_(frame), images_(images) {
     for (const SliceMaterial& material : materials) {
       taps_.push_back(slice_taps(material, count));
-      mix_per_mm_.push_back(1 / (mix_over_reach * material.reach_mm));
+      mix_per_mm_.push_back(1 / (mix_over_reach * reach_mm(material)));
     }
     material_.assign(static_cast<std::size_t>(frame.width) * frame.height, -1);
     for (int y = 0; y < frame.height; ++y) {

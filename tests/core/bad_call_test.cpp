@@ -3,6 +3,7 @@
 
 #include "catch.hpp"
 #include "dermis/dermis.hpp"
+#include "failure.hpp"
 
 using dermis::Camera;
 using dermis::Device;
@@ -18,13 +19,9 @@ namespace {
 
 template <class Call>
 void check_error(const Call& call, ErrorCode code, const std::string& message) {
-  try {
-    call();
-    FAIL_CHECK("no error, expected: " << message);
-  } catch (const Error& error) {
-    CHECK(error.what() == message);
-    CHECK(static_cast<int>(error.code()) == static_cast<int>(code));
-  }
+  const Failure failure = failure_of(call);
+  CHECK(failure.message == message);
+  CHECK(failure.code == code);
 }
 
 const std::vector<dermis::Material> skin = {{0, dermis::preset("skin").profile}};

@@ -1,12 +1,12 @@
 // The kernels of the disc method against the oracle on random frames, within the bound that it derives from float
 // rounding.
-#include <algorithm>
 #include <cmath>
 #include <string>
 
 #include "catch.hpp"
 #include "core/oracle_material.hpp"
 #include "core/random_frame.hpp"
+#include "core/tally.hpp"
 #include "dermis/plan.hpp"
 
 using dermis::Device;
@@ -16,35 +16,6 @@ using dermis::Plan;
 namespace oracle = dermis::oracle;
 
 namespace {
-
-struct Tally {
-  double worst = 0;  ///< error / bound
-  long values = 0;
-  long loose = 0;    ///< of which the bound is more than a hundredth of the largest one of the frame
-  long changed = 0;  ///< that differ from the light
-};
-
-void compare(const GuardedImage& output, const oracle::Picture& expected, const oracle::Picture& bound, Tally& tally) {
-  double largest = 0;
-  for (const double value : expected.values) largest = std::max(largest, std::abs(value));
-  for (int y = 0; y < expected.height; ++y) {
-    for (int x = 0; x < expected.width; ++x) {
-      for (int c = 0; c < 3; ++c) {
-        const double value = expected(x, y, c);
-        const bool half = output.layout().format == dermis::Format::f16;
-        const double allowed = bound(x, y, c) + (half ? half_rounding(value) : 0);
-        const double error = std::abs(output.get(x, y, c) - value);
-        ++tally.values;
-        if (bound(x, y, c) > 0.01 * largest) ++tally.loose;
-        if (!half && error > 0) tally.worst = std::max(tally.worst, error / allowed);
-        if (!(error <= allowed)) {
-          CAPTURE(x, y, c, value, output.get(x, y, c), error, allowed);
-          REQUIRE(error <= allowed);
-        }
-      }
-    }
-  }
-}
 
 /// A frame whose options ask for some kind of disc.
 void choose_discs(Random& random, RandomFrame& frame) {
@@ -90,20 +61,7 @@ TEST_CASE("discs equal the oracle within float rounding", "[disc][kernels]") {
 
     Plan(device, random_frame.materials, FrameDescription::of(frame), random_frame.options).run(frame);
 
-    compare(*random_frame.scattered, expected.scattered, expected.scattered_bound, tally);
-    CHECK(random_frame.scattered->guards_intact());
-    if (random_frame.result) {
-      compare(*random_frame.result, expected.result, expected.result_bound, tally);
-      CHECK(random_frame.result->guards_intact());
-    }
-    for (int y = 0; y < height; ++y) {
-      for (int x = 0; x < width; ++x) {
-        if (expected.touched(x, y) == 0) continue;
-        for (int c = 0; c < 3; ++c) {
-          if (std::abs(expected.scattered(x, y, c) - random_frame.light->get(x, y, c)) > 1e-3) ++tally.changed;
-        }
-      }
-    }
+    compare(random_frame, expected, tally);
   }
   INFO("worst error / bound " << tally.worst << ", " << tally.loose << " of " << tally.values << " bounds are loose");
   CHECK(tally.changed > 1000);  // the filter did something

@@ -4,7 +4,10 @@
 #include <vector>
 
 #include "catch.hpp"
+#include "core/oracle_material.hpp"
 #include "core/random_frame.hpp"
+#include "dermis/oracle/compare.hpp"
+#include "dermis/oracle/scenes.hpp"
 #include "dermis/plan.hpp"
 
 using dermis::Camera;
@@ -90,6 +93,32 @@ TEST_CASE("edges that a matte covers in part blend, and leak less than those tha
     }
     CHECK(dimmed > 1);
   }
+}
+
+TEST_CASE("the exact method equals the surface integral where materials cover pixels in part", "[matte][exact]") {
+  const dermis::oracle::Scene scene = dermis::oracle::scene("sphere", 45, 31, 3);
+  Random random(91);
+  std::vector<float> matte;
+  for (std::size_t i = 0; i < scene.depth.size(); ++i)
+    matte.push_back(random.integer(0, 3) == 0 ? static_cast<float>(random.uniform(0, 1)) : 1);
+  std::vector<float> scattered(scene.light.size());
+  Frame frame = scene.frame();
+  frame.scattered.host = scattered.data();
+  const std::vector<dermis::Material> materials = {{1, dermis::preset("skin").profile}};
+  const Options options{.method = Method::exact};
+  const auto filtered = [&] {
+    Plan(Device::open(), materials, FrameDescription::of(frame), options).run(frame);
+    dermis::oracle::Picture picture(scene.width, scene.height, 3);
+    picture.values.assign(scattered.begin(), scattered.end());
+    return picture;
+  };
+  const dermis::oracle::Picture without = filtered();
+  frame.matte.host = matte.data();
+  const auto expected =
+      dermis::oracle::surface_integral(frame, oracle_materials(materials, options.taps), options).scattered;
+  // As without a matte: what the tables of the profile are worth.
+  CHECK(dermis::oracle::compare(filtered(), expected).relative_l2 <= 1e-5);
+  CHECK(dermis::oracle::compare(without, expected).relative_l2 > 1e-2);
 }
 
 TEST_CASE("a matte that covers all gives the bits of none, one that covers nothing those of another id", "[matte]") {

@@ -4,9 +4,9 @@
 #include "catch.hpp"
 #include "dermis/error.hpp"
 #include "dermis/texture.hpp"
+#include "failure.hpp"
 
 using dermis::Device;
-using dermis::Error;
 using dermis::ErrorCode;
 using dermis::Profile;
 using dermis::TextureDescription;
@@ -18,13 +18,9 @@ namespace {
 
 template <class Call>
 void check_error(const Call& call, ErrorCode code, const std::string& message) {
-  try {
-    call();
-    FAIL_CHECK("no error, expected: " << message);
-  } catch (const Error& error) {
-    CHECK_THAT(error.what(), Catch::StartsWith(message));
-    CHECK(static_cast<int>(error.code()) == static_cast<int>(code));
-  }
+  const Failure failure = failure_of(call);
+  CHECK_THAT(failure.message, Catch::StartsWith(message));
+  CHECK(failure.code == code);
 }
 
 const Profile skin = dermis::preset("skin").profile;

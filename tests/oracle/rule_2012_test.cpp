@@ -16,7 +16,7 @@ namespace {
 
 SliceMaterial gaussian(int id) {
   const auto radial = [](int, double r) { return std::exp(-r * r / 2) / (2 * 3.14159265358979); };
-  return {.id = id, .radial = radial, .reach_mm = 3};
+  return {.id = id, .radial = radial, .radius_mm = 9};
 }
 
 }  // namespace
