@@ -36,7 +36,7 @@ void add_disc_arguments(CLI::App& app, DiscArguments& arguments) {
       ->check(one_of({"tangent", "screen"}))
       ->default_str("tangent");
   app.add_flag("--prefilter", arguments.prefilter,
-               "--method disc: samples read the mean over as many pixels as they stand for: less than half the noise");
+               "--method disc: samples read the mean over as many pixels as they stand for, for less noise");
   app.add_option("--accumulate", arguments.accumulate, "--method disc: the mean of so many results, of seed after seed")
       ->check(whole_number([](std::int64_t seeds) { return seeds >= 1 && seeds <= most_seeds; },
                            fmt::format("a whole number from 1 to {}", most_seeds)))

@@ -134,6 +134,16 @@ Scene scene(std::string_view name, int width, int height, double px_per_mm, Came
   return scene;
 }
 
+namespace {
+
+/// A row of a view-projection matrix: how far a point lies along an axis from the eye, in units of `unit_mm`.
+void set_row(ShadowMap& map, std::size_t row, const Vec3& axis, const Vec3& eye, double unit_mm) {
+  for (std::size_t i = 0; i < 3; ++i) map.view_projection[4 * row + i] = axis[i] / unit_mm;
+  map.view_projection[4 * row + 3] = -dot(axis, eye) / unit_mm;
+}
+
+}  // namespace
+
 Light SceneLight::with_map() const {
   Light result = light;
   result.map.depth = packed(depth);
@@ -160,15 +170,9 @@ SceneLight scene_light(std::string_view name, int width, int height, double px_p
   result.light.colour = sun_colour;
   ShadowMap& map = result.light.map;
   map.width = map.height = texels;
-  for (int i = 0; i < 3; ++i) {
-    map.view_projection[static_cast<std::size_t>(i)] = right[static_cast<std::size_t>(i)] / half_mm;
-    map.view_projection[static_cast<std::size_t>(4 + i)] = up[static_cast<std::size_t>(i)] / half_mm;
-    map.view_projection[static_cast<std::size_t>(8 + i)] =
-        direction[static_cast<std::size_t>(i)] / (4 * caster->radius_mm);
-  }
-  map.view_projection[3] = -dot(right, eye) / half_mm;
-  map.view_projection[7] = -dot(up, eye) / half_mm;
-  map.view_projection[11] = -dot(direction, eye) / (4 * caster->radius_mm);
+  set_row(map, 0, right, eye, half_mm);
+  set_row(map, 1, up, eye, half_mm);
+  set_row(map, 2, direction, eye, 4 * caster->radius_mm);
   map.view_projection[15] = 1;
   for (int y = 0; y < texels; ++y) {
     for (int x = 0; x < texels; ++x) {
