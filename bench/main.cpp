@@ -5,8 +5,10 @@
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
+#include <functional>
 
 #include "dermis/error.hpp"
+#include "matching.hpp"
 #include "paper.hpp"
 #include "picture_report.hpp"
 #include "plots.hpp"
@@ -81,7 +83,14 @@ bench::Subject subject_of(const Arguments& arguments) {
 
 void say(const std::string& text) { fmt::print(stderr, "dermis-bench: {}\n", text); }
 
+template <class Named, class Name>
+void print_names(const std::vector<Named>& cases, Name name) {
+  for (const Named& what : cases) fmt::print("{}\n", std::invoke(name, what));
+}
+
 void measure_picture(const Arguments& arguments) {
+  const auto cases = bench::matching(bench::picture_cases(), &bench::PictureCase::name, arguments.filter);
+  if (arguments.list) return print_names(cases, &bench::PictureCase::name);
   if (!arguments.csv.empty()) throw Error(ErrorCode::usage, "--csv", "a picture", "no picture: --json has its rows");
   OutputFile json("--json", arguments.json);
   if (!arguments.plot.empty()) bench::prepare_plots(arguments.plot);
@@ -89,7 +98,7 @@ void measure_picture(const Arguments& arguments) {
   const bench::Subject subject = subject_of(arguments);
   constexpr int default_rounds = 15;
   const auto measurement =
-      bench::measure_picture(device, subject, bench::picture_cases(), arguments.rounds.value_or(default_rounds), say);
+      bench::measure_picture(device, subject, cases, arguments.rounds.value_or(default_rounds), say);
   fmt::print("{}", bench::table_of(measurement, subject, device.info()));
   json.write(bench::json_of(measurement, subject, device.info()));
   if (!arguments.plot.empty()) {
@@ -101,12 +110,9 @@ void measure_made_scenes(const Arguments& arguments) {
   if (arguments.threads > 0) {
     throw Error(ErrorCode::usage, "--threads", std::to_string(arguments.threads), "a picture; cases name their own");
   }
-  std::vector<bench::Case> cases = arguments.all ? bench::all_cases() : bench::default_cases();
-  if (!arguments.filter.empty()) cases = bench::matching(std::move(cases), arguments.filter);
-  if (arguments.list) {
-    for (const bench::Case& what : cases) fmt::print("{}\n", what.name());
-    return;
-  }
+  const auto cases = bench::matching(arguments.all ? bench::all_cases() : bench::default_cases(), &bench::Case::name,
+                                     arguments.filter);
+  if (arguments.list) return print_names(cases, &bench::Case::name);
   if (arguments.all && arguments.filter.empty()) {
     throw Error(ErrorCode::usage, "--all", fmt::format("{} cases", cases.size()), "a --filter, or --list");
   }

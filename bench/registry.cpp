@@ -1,9 +1,7 @@
 #include "registry.hpp"
 
-#include <regex>
 #include <utility>
 
-#include "dermis/error.hpp"
 #include "opponents.hpp"
 
 namespace dermis::bench {
@@ -172,17 +170,6 @@ std::vector<Case> all_cases() {
     }
   }
   add_start_up(cases);
-  return cases;
-}
-
-std::vector<Case> matching(std::vector<Case> cases, const std::string& expression) {
-  try {
-    const std::regex wanted(expression);
-    std::erase_if(cases, [&](const Case& what) { return !std::regex_search(what.name(), wanted); });
-  } catch (const std::regex_error&) {
-    throw Error(ErrorCode::usage, "--filter", expression, "a regular expression");
-  }
-  if (cases.empty()) throw Error(ErrorCode::usage, "--filter", expression, "a match of a name that --list prints");
   return cases;
 }
 

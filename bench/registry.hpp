@@ -15,8 +15,4 @@ std::vector<Case> default_cases();
 /// Every combination of methods, ranks, taps, widths, coverages, sizes and threads, for --filter to choose from.
 std::vector<Case> all_cases();
 
-/// Those of `cases` whose name has a match of the regular expression (ECMAScript). Throws Error(usage) that names
-/// --filter if it is malformed or matches nothing.
-std::vector<Case> matching(std::vector<Case> cases, const std::string& expression);
-
 }  // namespace dermis::bench
