@@ -13,12 +13,17 @@ typedef struct {
   global const struct TermParams* terms;
 } Target;
 
-// Adds taps to the sums: squared distance, length of surface and light are theirs.
-FORCED_INLINE void add_taps(Sums* sums, const Target* target, global const struct WeightParams* its, vfloat r_squared,
-                            vfloat segment, const vrgb* light) {
-  const vfloat stretch = target->footprint * segment;
+// What a tap of each lane falls on.
+typedef struct {
+  vfloat r_squared;  // its true distance, mm^2
+  vfloat segment;    // length of surface, mm; 0 where there is none to weigh
+  vrgb light[TERMS];
+} Tap;
+
+FORCED_INLINE void add_taps(Sums* sums, const Target* target, global const struct WeightParams* its, const Tap* tap) {
+  const vfloat stretch = target->footprint * tap->segment;
   const vrgb length = times(target->reciprocal, stretch);
-  const vrgb distance = times(product(target->reciprocal, target->reciprocal), r_squared);  // squared, over k^2
+  const vrgb distance = times(product(target->reciprocal, target->reciprocal), tap->r_squared);  // squared, over k^2
   vrgb first;
 #pragma unroll
   for (int t = 0; t < TERMS; ++t) {
@@ -31,58 +36,36 @@ FORCED_INLINE void add_taps(Sums* sums, const Target* target, global const struc
       weight.g = fma(its[t].share[1], first.g, weight.g);
       weight.b = fma(its[t].share[2], first.b, weight.b);
     }
-    sums->light[t] = fused(weight, light[t], sums->light[t]);
+    sums->light[t] = fused(weight, tap->light[t], sums->light[t]);
     sums->weight[t] = sum_rgb(sums->weight[t], weight);
   }
 }
 
-// Adds the pixels an offset away along the pass. `clean`: they are of the material.
-FORCED_INLINE void add_straight(Sums* sums, const struct FrameParams* f, const Pass* s, const Target* target,
-                                global const struct WeightParams* its, int x, int y, int offset, const int clean) {
-  if (!clean && !in_frame(f, s, x, y, offset)) return;
-  const size_t tap = tap_at(s, x, y, offset);
-  vfloat segment = load_floats(s->from->segment + tap);
-  if (!clean) {
-    // Elsewhere there is no surface to weigh, and the light is finite.
-    segment = keep(AS_MASK((load_bytes(s->from->material + tap) & MATERIAL_MASK) == target->material), segment);
-  }
-  const vfloat r_squared =
-      squared_distance_along(f, &target->points, load_floats(s->from->depth + tap), (float)offset, s->axis);
-  vrgb light[TERMS];
-#pragma unroll
-  for (int t = 0; t < TERMS; ++t) light[t] = load_term(s, t, tap);
-  add_taps(sums, target, its, r_squared, segment, light);
-}
-
-#if SHEARED
-// How far the lanes of a material are sheared: columns per row, times 4096.
+// How far the vertical pass is sheared in the lanes of a material: columns per row, times 4096. What other lanes have
+// does not count.
 typedef struct {
   vint lanes;
   int low, high;
 } Shears;
 
-FORCED_INLINE Shears shears_at(const struct FrameParams* f, const Window* w, vint material, int x, int y) {
-  Shears shears;
-  const vint mine = AS_MASK((load_bytes(w->surface + pixel_at(w, x, y)) & MATERIAL_MASK) == material);
-  shears.lanes = shear_at(f, w, x, y) & mine;
-  shears.low = lowest_lane(shears.lanes);
-  shears.high = highest_lane(shears.lanes);
+FORCED_INLINE Shears shears_at(const struct FrameParams* f, const Pass* s, vint material, int x, int y) {
+  Shears shears = {(vint)(0), 0, 0};
+#if SHEARED
+  if (s->axis == 0) return shears;
+  const vint mine = AS_MASK((load_bytes(s->from->surface + pixel_at(s->from, x, y)) & MATERIAL_MASK) == material);
+  shears.lanes = shear_at(f, s->from, x, y);
+  shears.low = lowest_lane(select((vint)(INT_MAX), shears.lanes, mine));
+  shears.high = highest_lane(select((vint)(-INT_MAX), shears.lanes, mine));
+#endif
   return shears;
 }
 
-// Whether some lane has a tap to its side, none of which are farther away than that.
-FORCED_INLINE int is_sheared(const Shears* shears, int farthest_px) {
-  return side_of(shears->low, farthest_px) != 0 || side_of(shears->high, farthest_px) != 0 ||
-         side_of(shears->low, -farthest_px) != 0 || side_of(shears->high, -farthest_px) != 0;
-}
-
+#if SHEARED
 // Adds the pixels so many rows away, each lane its own to the side, of one run of PICKED pixels. Returns whether there
 // is another run.
-FORCED_INLINE int add_sheared(Sums* sums, const struct FrameParams* f, const Pass* s, const Target* target,
-                              global const struct WeightParams* its, const Shears* shears, int x, int y, int offset,
-                              int run, const int clean) {
+FORCED_INLINE int load_sheared(Tap* tap, const struct FrameParams* f, const Pass* s, const Target* target,
+                               const Shears* shears, int x, int y, int offset, int run, const int clean) {
   const Window* w = s->from;
-  if (!clean && (y + offset < 0 || y + offset >= f->height)) return 0;
   const vint side = sides_of(shears->lanes, offset);
   const vint to_x = x + int_lane_numbers() + side;
   const int one_end = side_of(shears->low, offset);
@@ -93,16 +76,15 @@ FORCED_INLINE int add_sheared(Sums* sums, const struct FrameParams* f, const Pas
   const vint index = (to_x - begin) & (PICKED - 1);
   const size_t at = pixel_at(w, begin, y + offset);
   const int has_more = from + PICKED < x + V + max(one_end, other_end);
-  vfloat segment = pick(w->segment + at, index);
-  const vfloat z = pick(w->depth + at, index);
-  const vfloat r_squared = squared_distance_down(f, &target->points, z, as_floats(side), (float)offset);
-  vrgb light[TERMS];
+  tap->segment = pick(w->segment + at, index);
+  tap->r_squared =
+      squared_distance_down(f, &target->points, pick(w->depth + at, index), as_floats(side), (float)offset);
 #pragma unroll
   for (int t = 0; t < TERMS; ++t) {
     global const float* its_light = w->light + t * s->next_light + at;
-    light[t].r = pick(its_light, index);
-    light[t].g = pick(its_light + w->plane, index);
-    light[t].b = pick(its_light + 2 * w->plane, index);
+    tap->light[t].r = pick(its_light, index);
+    tap->light[t].g = pick(its_light + w->plane, index);
+    tap->light[t].b = pick(its_light + 2 * w->plane, index);
   }
   if (!clean || run > 0 || has_more) {
     vint there = AS_MASK(to_x >= from) & AS_MASK(to_x < from + PICKED);
@@ -110,13 +92,47 @@ FORCED_INLINE int add_sheared(Sums* sums, const struct FrameParams* f, const Pas
       there &= AS_MASK(to_x >= 0) & AS_MASK(to_x < f->width) &
                AS_MASK((pick_bytes(w->material + at, index) & MATERIAL_MASK) == target->material);
     }
-    segment = keep(there, segment);
-    for (int t = 0; t < TERMS; ++t) light[t] = keep_rgb(there, light[t]);
+    tap->segment = keep(there, tap->segment);
+    for (int t = 0; t < TERMS; ++t) tap->light[t] = keep_rgb(there, tap->light[t]);
   }
-  add_taps(sums, target, its, r_squared, segment, light);
   return has_more;
 }
 #endif
+
+// Adds the pixels an offset away along the pass. `clean`: they are of the material. Returns whether some lanes have
+// theirs in another run, which is to be added next.
+FORCED_INLINE int add_tap(Sums* sums, const struct FrameParams* f, const Pass* s, const Target* target,
+                          global const struct WeightParams* its, const Shears* shears, int x, int y, int offset,
+                          int run, const int clean) {
+  Tap tap;
+  int has_more = 0;
+  if (!clean && s->axis == 1 && (y + offset < 0 || y + offset >= f->height)) return 0;
+  const int side = s->axis == 0 ? 0 : side_of(shears->low, offset);
+#if SHEARED
+  if (s->axis == 1 && side != side_of(shears->high, offset)) {
+    has_more = load_sheared(&tap, f, s, target, shears, x, y, offset, run, clean);
+  } else
+#endif
+  {
+    const int to_x = s->axis == 0 ? x + offset : x + side;
+    if (!clean && (to_x <= -V || to_x >= f->width)) return 0;
+    const size_t at = pixel_at(s->from, to_x, y + s->y_step * offset);
+    tap.segment = load_floats(s->from->segment + at);
+    if (!clean) {
+      // Elsewhere there is no surface to weigh, and the light is finite.
+      vint there = AS_MASK((load_bytes(s->from->material + at) & MATERIAL_MASK) == target->material);
+      if (side != 0) there &= AS_MASK(to_x + int_lane_numbers() >= 0) & AS_MASK(to_x + int_lane_numbers() < f->width);
+      tap.segment = keep(there, tap.segment);
+    }
+    const vfloat z = load_floats(s->from->depth + at);
+    tap.r_squared = side == 0 ? squared_distance_along(f, &target->points, z, (float)offset, s->axis)
+                              : squared_distance_down(f, &target->points, z, (vfloat)((float)side), (float)offset);
+#pragma unroll
+    for (int t = 0; t < TERMS; ++t) tap.light[t] = load_term(s, t, at);
+  }
+  add_taps(sums, target, its, &tap);
+  return has_more;
+}
 
 #if JITTER
 // Adds the pixels (dx, dy) away, different for each lane.
@@ -124,31 +140,33 @@ FORCED_INLINE void add_rotated(Sums* sums, const struct FrameParams* f, const Pa
                                global const struct WeightParams* its, int x, int y, vint dx, vint dy) {
   const vint qx = x + int_lane_numbers() + dx;
   const vint qy = y + dy;
-  vfloat z, segment, fx, fy;
+  Tap tap;
+  vfloat z, fx, fy;
   vint m;
-  vrgb light[TERMS];
 #define READ_LANE(lane)                                                                                                \
   {                                                                                                                    \
     const int inside = LANE(qx, lane) >= max(s->from->x_begin, 0) && LANE(qx, lane) < min(s->from->x_end, f->width) && \
                        LANE(qy, lane) >= s->from->y_begin && LANE(qy, lane) < s->from->y_end;                          \
     const size_t at = pixel_at(s->from, inside ? LANE(qx, lane) : x, inside ? LANE(qy, lane) : y);                     \
     LANE(z, lane) = s->from->depth[at];                                                                                \
-    LANE(segment, lane) = s->from->segment[at];                                                                        \
+    LANE(tap.segment, lane) = s->from->segment[at];                                                                    \
     LANE(m, lane) = inside ? s->from->material[at] : 0;                                                                \
     LANE(fx, lane) = (float)LANE(dx, lane);                                                                            \
     LANE(fy, lane) = (float)LANE(dy, lane);                                                                            \
     for (int t = 0; t < TERMS; ++t) {                                                                                  \
       global const float* its_light = s->from->light + t * s->next_light + at;                                         \
-      LANE(light[t].r, lane) = its_light[0];                                                                           \
-      LANE(light[t].g, lane) = its_light[s->from->plane];                                                              \
-      LANE(light[t].b, lane) = its_light[2 * s->from->plane];                                                          \
+      LANE(tap.light[t].r, lane) = its_light[0];                                                                       \
+      LANE(tap.light[t].g, lane) = its_light[s->from->plane];                                                          \
+      LANE(tap.light[t].b, lane) = its_light[2 * s->from->plane];                                                      \
     }                                                                                                                  \
   }
   EACH_LANE(READ_LANE)
 #undef READ_LANE
   const vint same = AS_MASK((m & MATERIAL_MASK) == target->material);
-  for (int t = 0; t < TERMS; ++t) light[t] = keep_rgb(same, light[t]);
-  add_taps(sums, target, its, squared_distance(f, &target->points, z, fx, fy), keep(same, segment), light);
+  for (int t = 0; t < TERMS; ++t) tap.light[t] = keep_rgb(same, tap.light[t]);
+  tap.segment = keep(same, tap.segment);
+  tap.r_squared = squared_distance(f, &target->points, z, fx, fy);
+  add_taps(sums, target, its, &tap);
 }
 
 // The axis of the pass, turned by each lane's angle, in 1/4096 px per px.
@@ -209,27 +227,14 @@ FORCED_INLINE void scatter_curved(vrgb* result, const struct FrameParams* f, con
     add_rotated(&sums, f, s, &target, its, x, y, -dx, -dy);
   }
 #endif
-  // One loop, as what does not change in an inner one would be loaded for each of its few rounds.
-  int tap = 2 * i;
-#if SHEARED
-  const Shears straight = {(vint)(0), 0, 0};
-  const Shears shears = s->axis == 1 ? shears_at(f, s->from, material, x, y) : straight;
-  if (s->axis == 1 && is_sheared(&shears, rung->last_offset_px)) {
-    int run = 0;
+  const Shears shears = shears_at(f, s, material, x, y);
+  int run = 0;
 #pragma nounroll
-    while (tap < 2 * rung->pairs) {
-      global const struct WeightParams* its = weights + (tap / 2 + 1) * TERMS;
-      const int offset = offset_of(offsets, tap);
-      const int is_done = !add_sheared(&sums, f, s, &target, its, &shears, x, y, offset, run, clean);
-      tap += is_done;
-      run = is_done ? 0 : run + 1;
-    }
-  }
-#endif
-#pragma nounroll
-  for (; tap < 2 * rung->pairs; ++tap) {
+  for (int tap = 2 * i; tap < 2 * rung->pairs;) {
     global const struct WeightParams* its = weights + (tap / 2 + 1) * TERMS;
-    add_straight(&sums, f, s, &target, its, x, y, offset_of(offsets, tap), clean);
+    const int has_more = add_tap(&sums, f, s, &target, its, &shears, x, y, offset_of(offsets, tap), run, clean);
+    run = has_more ? run + 1 : 0;
+    tap += !has_more;
   }
   // Where more surface lies within reach than on a plane, a mean divides by it, and a difference must not grow with it.
   const vrgb all = sums.weight[0];

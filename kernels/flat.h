@@ -7,13 +7,12 @@ SHARED void add_last_pairs(vrgb* sums, const Pass* s, global const struct RungPa
                            global const struct FlatWeight* weights, int i, int x, int y) {
 #pragma nounroll
   for (; i < rung->pairs; ++i) {
-    const size_t after = tap_at(s, x, y, offsets[i]);
-    const size_t before = tap_at(s, x, y, -offsets[i]);
+    const TapPair taps = pair_at(s, x, y, offsets, i);
     weights += TERMS;
 #define ADD_CHANNEL(name, channel)                                                                   \
   if (i < rung->channel_pairs[channel]) {                                                            \
     for (int t = 0; t < TERMS; ++t) {                                                                \
-      const ChannelPair pair = load_channel_pair(s, t, channel, after, before);                      \
+      const ChannelPair pair = load_channel_pair(s, t, channel, taps);                               \
       sums[t].name = fma((vfloat)(weights[t].rgb[channel]), pair.after + pair.before, sums[t].name); \
     }                                                                                                \
   }
@@ -24,35 +23,46 @@ SHARED void add_last_pairs(vrgb* sums, const Pass* s, global const struct RungPa
   }
 }
 
+// So many vectors of pixels at a time: what is loaded for all of them is loaded less often.
+#define AT_ONCE 2
+
+typedef struct {
+  int x, y;
+} Pixel;
+
 // A flat cell where every tap falls on the material.
-FORCED_INLINE void scatter_clean(vrgb* result, const Pass* s, global const struct RungParams* rung,
-                                 global const int* offsets, global const struct FlatWeight* weights, int x, int y) {
-  const size_t at = pixel_at(s->from, x, y);
+FORCED_INLINE void scatter_clean(vrgb (*result)[TERMS], const Pass* s, global const struct RungParams* rung,
+                                 global const int* offsets, global const struct FlatWeight* weights, const Pixel* p) {
 #pragma unroll
-  for (int t = 0; t < TERMS; ++t) {
-    result[t] = scaled(weights[t].rgb, load_term(s, t, at));
+  for (int n = 0; n < AT_ONCE; ++n) {
+#pragma unroll
+    for (int t = 0; t < TERMS; ++t) {
+      result[n][t] = scaled(weights[t].rgb, load_term(s, t, pixel_at(s->from, p[n].x, p[n].y)));
+    }
   }
   const int full_pairs = full_pairs_of(rung);
   int i = 0;
 #pragma nounroll
   for (; i < full_pairs; ++i) {
-    const size_t after = tap_at(s, x, y, offsets[i]);
-    const size_t before = tap_at(s, x, y, -offsets[i]);
     weights += TERMS;
-    vrgb pair;
 #pragma unroll
-    for (int t = 0; t < TERMS; ++t) {
-      if (t == 0 || s->axis == 1) {
-        pair = sum_rgb(load_term(s, t, after), load_term(s, t, before));
+    for (int n = 0; n < AT_ONCE; ++n) {
+      const TapPair taps = pair_at(s, p[n].x, p[n].y, offsets, i);
+      vrgb both;
+#pragma unroll
+      for (int t = 0; t < TERMS; ++t) {
+        if (t == 0 || s->axis == 1) both = sum_rgb(load_term(s, t, taps.after), load_term(s, t, taps.before));
+        result[n][t] = add_scaled(weights[t].rgb, both, result[n][t]);
       }
-      result[t] = add_scaled(weights[t].rgb, pair, result[t]);
     }
   }
   if (i < rung->pairs) {
     vrgb rest[TERMS];
-    for (int t = 0; t < TERMS; ++t) rest[t] = result[t];
-    add_last_pairs(rest, s, rung, offsets, weights, i, x, y);
-    for (int t = 0; t < TERMS; ++t) result[t] = rest[t];
+    for (int n = 0; n < AT_ONCE; ++n) {
+      for (int t = 0; t < TERMS; ++t) rest[t] = result[n][t];
+      add_last_pairs(rest, s, rung, offsets, weights, i, p[n].x, p[n].y);
+      for (int t = 0; t < TERMS; ++t) result[n][t] = rest[t];
+    }
   }
 }
 

@@ -113,6 +113,34 @@ FORCED_INLINE void fetch_rgb_ahead(const RgbRow* row, int x) {
 }
 
 #if V == 16
+// Whether the channels of a pixel follow each other, and the pixels, which may have more channels.
+static inline int is_interleaved(const RgbRow* row, int format, int value_bytes, int channels) {
+  return row->r.format == format && row->r.pixel_stride == channels * value_bytes &&
+         row->g.at - row->r.at == value_bytes && row->b.at - row->r.at == 2 * value_bytes;
+}
+
+// Sixteen pixels of three floats each.
+SHARED vrgb read_interleaved_floats(global const float* at) {
+  const float16 p = load_floats(at), q = load_floats(at + 16), s = load_floats(at + 32);
+  const float16 r = __builtin_shufflevector(p, q, 0, 3, 6, 9, 12, 15, 18, 21, 24, 27, 30, -1, -1, -1, -1, -1);
+  const float16 g = __builtin_shufflevector(p, q, 1, 4, 7, 10, 13, 16, 19, 22, 25, 28, 31, -1, -1, -1, -1, -1);
+  const float16 b = __builtin_shufflevector(p, q, 2, 5, 8, 11, 14, 17, 20, 23, 26, 29, -1, -1, -1, -1, -1, -1);
+  const vrgb value = {__builtin_shufflevector(r, s, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 17, 20, 23, 26, 29),
+                      __builtin_shufflevector(g, s, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 18, 21, 24, 27, 30),
+                      __builtin_shufflevector(b, s, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 16, 19, 22, 25, 28, 31)};
+  return value;
+}
+
+SHARED void write_interleaved_floats(global float* at, vrgb v) {
+  const float16 p = __builtin_shufflevector(v.r, v.g, 0, 16, -1, 1, 17, -1, 2, 18, -1, 3, 19, -1, 4, 20, -1, 5);
+  const float16 q = __builtin_shufflevector(v.r, v.g, 21, -1, 6, 22, -1, 7, 23, -1, 8, 24, -1, 9, 25, -1, 10, 26);
+  const float16 s = __builtin_shufflevector(v.r, v.g, -1, 11, 27, -1, 12, 28, -1, 13, 29, -1, 14, 30, -1, 15, 31, -1);
+  global unaligned_floats* to = (global unaligned_floats*)at;
+  to[0] = __builtin_shufflevector(p, v.b, 0, 1, 16, 3, 4, 17, 6, 7, 18, 9, 10, 19, 12, 13, 20, 15);
+  to[1] = __builtin_shufflevector(q, v.b, 0, 21, 2, 3, 22, 5, 6, 23, 8, 9, 24, 11, 12, 25, 14, 15);
+  to[2] = __builtin_shufflevector(s, v.b, 26, 1, 2, 27, 4, 5, 28, 7, 8, 29, 10, 11, 30, 13, 14, 31);
+}
+
 // Sixteen pixels of four halves each, the fourth of which nobody looks at.
 SHARED vrgb read_interleaved_halves(global const uchar* at) {
   typedef ushort16 unaligned_halves __attribute__((aligned(2)));
@@ -130,9 +158,11 @@ SHARED vrgb read_interleaved_halves(global const uchar* at) {
 SHARED vrgb read_any_rgb(const RgbRow* row, int x) {
 #if V == 16
   const Row r = row->r;
+  if (x >= 0 && x + V <= r.width && is_interleaved(row, FORMAT_F32, 4, 3)) {
+    return read_interleaved_floats((global const float*)r.at + 3 * x);
+  }
   // Another pixel has to follow, so that the fourth value of the last one is there.
-  if (r.format == FORMAT_F16 && r.pixel_stride == 8 && row->g.at - r.at == 2 && row->b.at - r.at == 4 && x >= 0 &&
-      x + V < r.width) {
+  if (x >= 0 && x + V < r.width && is_interleaved(row, FORMAT_F16, 2, 4)) {
     return read_interleaved_halves(r.at + x * (Bytes)8);
   }
 #endif
@@ -203,6 +233,12 @@ FORCED_INLINE void write_values(global uchar* image, const struct ImageParams* p
 }
 
 SHARED void write_rgb(global uchar* image, const struct ImageParams* p, int x, int y, vrgb value, vint mask) {
+#if V == 16
+  if (p->format == FORMAT_F32 && p->pixel_stride == 12 && p->channel_stride == 4 && !any_bit(~mask)) {
+    write_interleaved_floats((global float*)(image + byte_at(p, x, y, 0)), value);
+    return;
+  }
+#endif
   write_values(image, p, x, y, 0, value.r, mask);
   write_values(image, p, x, y, 1, value.g, mask);
   write_values(image, p, x, y, 2, value.b, mask);

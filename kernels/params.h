@@ -31,8 +31,8 @@ typedef long long Bytes;
 #define NARROW_BIT 0x80
 #define MAX_MATERIALS 127
 
-// Counters of a run, those from bad on of pixels, or of their channels that are left alone, and the height of its
-// tiles.
+// Counters of a run, those from bad on of pixels, or of their channels that are left alone; the height of its tiles,
+// and how far taps of the vertical pass go.
 #define COUNTER_NEXT_TILE 0
 #define COUNTER_WORKERS 1
 #define COUNTER_BAD 2
@@ -43,10 +43,8 @@ typedef long long Bytes;
 #define COUNTER_CHANNELS 7
 #define COUNTER_TILE_HEIGHT 8
 #define COUNTER_UNLIT 9
-#define RUN_COUNTERS 10
-
-// Tiles with something to scatter that every worker should get, so that all end at about the same time.
-#define TILES_PER_WORKER 6
+#define COUNTER_REACH 10
+#define RUN_COUNTERS 11
 
 // What became of a tile.
 #define TILE_WITHOUT_MATERIAL 0

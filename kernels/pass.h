@@ -20,6 +20,13 @@ typedef struct {
   uint seed;
 } Tables;
 
+// Where the taps of a vertical pass lie, made once for many pixels: those of pair i of the pixel (x, y), whose offset
+// is o, at x + row_at[y - o] + side_at[2 i] and x + row_at[y + o] + side_at[2 i + 1].
+typedef struct {
+  global const int* row_at;
+  global const int* side_at;
+} TapPlaces;
+
 // One pass: the horizontal one reads one image of light for all terms, the vertical one an image for each.
 typedef struct {
   const Window* from;
@@ -27,6 +34,7 @@ typedef struct {
   int y_step;
   int shear;          // of the vertical pass, columns per row times 4096
   size_t next_light;  // from the image of one term to that of the next
+  TapPlaces places;   // of the vertical pass over cells where every tap falls on the material
 } Pass;
 
 typedef struct {
@@ -35,7 +43,7 @@ typedef struct {
 } Sums;
 
 FORCED_INLINE Pass pass_from(const Window* w, int axis, int shear) {
-  const Pass pass = {w, axis, axis == 1, shear, axis == 0 ? 0 : 3 * w->plane};
+  const Pass pass = {w, axis, axis == 1, shear, axis == 0 ? 0 : 3 * w->plane, {0, 0}};
   return pass;
 }
 
@@ -46,6 +54,28 @@ FORCED_INLINE int tap_x(const Pass* s, int x, int offset) {
 // The pixel an offset away.
 FORCED_INLINE size_t tap_at(const Pass* s, int x, int y, int offset) {
   return pixel_at(s->from, tap_x(s, x, offset), y + s->y_step * offset);
+}
+
+// Both taps of a pair.
+typedef struct {
+  size_t before, after;
+} TapPair;
+
+FORCED_INLINE TapPair pair_at(const Pass* s, int x, int y, global const int* offsets, int i) {
+  const int offset = offsets[i];
+  TapPair pair;
+  if (s->axis == 0) {
+    pair.before = tap_at(s, x, y, -offset);
+    pair.after = tap_at(s, x, y, offset);
+  } else {
+    pair.before = x + s->places.row_at[y - offset];
+    pair.after = x + s->places.row_at[y + offset];
+#if SHEARED
+    pair.before += s->places.side_at[2 * i];
+    pair.after += s->places.side_at[2 * i + 1];
+#endif
+  }
+  return pair;
 }
 
 FORCED_INLINE vrgb load_term(const Pass* s, int t, size_t at) {
@@ -86,11 +116,11 @@ FORCED_INLINE vrgb add_scaled(global const float* factor, vrgb a, vrgb b) {
 
 // A pair of taps in one channel.
 typedef struct {
-  vfloat after, before;
+  vfloat before, after;
 } ChannelPair;
 
-FORCED_INLINE ChannelPair load_channel_pair(const Pass* s, int t, int channel, size_t after, size_t before) {
+FORCED_INLINE ChannelPair load_channel_pair(const Pass* s, int t, int channel, TapPair at) {
   global const float* plane = s->from->light + t * s->next_light + channel * s->from->plane;
-  const ChannelPair pair = {load_floats(plane + after), load_floats(plane + before)};
+  const ChannelPair pair = {load_floats(plane + at.before), load_floats(plane + at.after)};
   return pair;
 }

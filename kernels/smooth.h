@@ -34,13 +34,12 @@ SHARED void add_last_smooth_pairs(SmoothSums* sums, const Pass* s, global const 
                                   int y) {
 #pragma nounroll
   for (; i < rung->pairs; ++i) {
-    const size_t after = tap_at(s, x, y, offsets[i]);
-    const size_t before = tap_at(s, x, y, -offsets[i]);
+    const TapPair taps = pair_at(s, x, y, offsets, i);
     weights += TERMS;
 #define ADD_CHANNEL(name, channel)                                                                              \
   if (i < rung->channel_pairs[channel]) {                                                                       \
     for (int t = 0; t < TERMS; ++t) {                                                                           \
-      const ChannelPair pair = load_channel_pair(s, t, channel, after, before);                                 \
+      const ChannelPair pair = load_channel_pair(s, t, channel, taps);                                          \
       const vfloat both = pair.after + pair.before;                                                             \
       sums[t].rgb.name = fma((vfloat)(weights[t].rgb[channel]), both, sums[t].rgb.name);                        \
       sums[t].stretch.name = fma((vfloat)(weights[t].stretch[channel]), both, sums[t].stretch.name);            \
@@ -67,15 +66,14 @@ FORCED_INLINE void scatter_smooth_clean(vrgb* result, const struct FrameParams* 
   int i = 0;
 #pragma nounroll
   for (; i < full_pairs; ++i) {
-    const size_t after = tap_at(s, x, y, offsets[i]);
-    const size_t before = tap_at(s, x, y, -offsets[i]);
+    const TapPair taps = pair_at(s, x, y, offsets, i);
     weights += TERMS;
     vrgb both, change;
 #pragma unroll
     for (int t = 0; t < TERMS; ++t) {
       if (t == 0 || s->axis == 1) {
-        const vrgb a = load_term(s, t, after);
-        const vrgb b = load_term(s, t, before);
+        const vrgb a = load_term(s, t, taps.after);
+        const vrgb b = load_term(s, t, taps.before);
         both = sum_rgb(a, b);
         change = difference_rgb(a, b);
       }

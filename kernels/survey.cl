@@ -548,10 +548,13 @@ kernel void choose_passes(struct FrameParams f, int cells_per_item, global const
   int flat = 0;
   int smooth = 0;
   int channels = 0;
+  int reach = 0;
   for (int cell_x = first; cell_x < min(first + cells_per_item, f.cells_x); ++cell_x) {
     const int cell = cell_y * f.cells_x + cell_x;
     passes[cell].x = pass_over(&f, materials, rungs, cells, cell_x, cell_y, 0);
     passes[cell].y = pass_over(&f, materials, rungs, cells, cell_x, cell_y, 1);
+    const struct CellPass down = passes[cell].y;
+    reach = max(reach, farthest_tap_of(cells + cell, materials, rungs, down.footprint, down.shape));
     scattered += cells[cell].scattered;
     narrow += cells[cell].narrow;
     channels += cells[cell].scattered * min(channels_left_alone(materials, rungs, cells + cell, passes[cell].x),
@@ -565,4 +568,5 @@ kernel void choose_passes(struct FrameParams f, int cells_per_item, global const
   atomic_add(counters + COUNTER_FLAT, flat);
   atomic_add(counters + COUNTER_SMOOTH, smooth);
   atomic_add(counters + COUNTER_CHANNELS, channels);
+  atomic_max(counters + COUNTER_REACH, reach);
 }

@@ -115,13 +115,25 @@ static inline int scatter_tile(const struct FrameParams* f, const Inputs* in, co
   return TILE_FLAT + max(w.shape_across, w.shape_down);
 }
 
-// Lower tiles where little of the frame scatters, so that all workers get some of that. `scattered`: pixels.
-static inline void fit_tiles(struct FrameParams* f, int workers, int scattered) {
+// How long a frame takes with tiles of a height, in units of that without losses. The horizontal pass, half of the
+// work, is done again for the rows above and below a tile; and at the end workers wait for the last tile, for half the
+// time that it takes.
+static inline float time_of_tiles(const struct FrameParams* f, int tile_height, int workers, float share, int reach) {
+  const int tiles_y = (f->height + tile_height - 1) / tile_height;
+  const float rows = (float)f->height / tiles_y;
+  const float tiles = fmax(share * f->tiles_x * tiles_y, 1e-6f);
+  return (1.0f + reach / rows) * (1.0f + 0.5f * workers / tiles);
+}
+
+// `scattered`: pixels. `reach`: rows.
+static inline void fit_tiles(struct FrameParams* f, int workers, int scattered, int reach) {
   const float share = (float)scattered / ((float)f->width * f->height);
-  while (f->tile_height >= 2 * f->least_tile_height && share * f->tiles_x * f->tiles_y < TILES_PER_WORKER * workers) {
-    f->tile_height /= 2;
-    f->tiles_y = (f->height + f->tile_height - 1) / f->tile_height;
+  int best = f->tile_height;
+  for (int height = best / 2; height >= f->least_tile_height; height /= 2) {
+    if (time_of_tiles(f, height, workers, share, reach) < time_of_tiles(f, best, workers, share, reach)) best = height;
   }
+  f->tile_height = best;
+  f->tiles_y = (f->height + best - 1) / best;
 }
 
 kernel void scatter(struct FrameParams f, global const struct MaterialParams* materials,
@@ -148,7 +160,7 @@ kernel void scatter(struct FrameParams f, global const struct MaterialParams* ma
                        result_at, writes_scattered, writes_result, zeroes_bad};
   const Tables tables = {materials,    terms,          rungs,     offsets, weights,
                          flat_weights, smooth_weights, rotations, passes,  seed};
-  fit_tiles(&f, workers, atomic_add(counters + COUNTER_SCATTERED, 0));
+  fit_tiles(&f, workers, atomic_add(counters + COUNTER_SCATTERED, 0), atomic_add(counters + COUNTER_REACH, 0));
   atomic_xchg(counters + COUNTER_TILE_HEIGHT, f.tile_height);
   // There are more work-items than workers, as a device may give several to one thread; the first ones do the work.
   global uchar* own_memory = 0;
@@ -159,7 +171,7 @@ kernel void scatter(struct FrameParams f, global const struct MaterialParams* ma
       if (worker >= workers) return;
       const size_t band_bytes = 3 * BAND * (size_t)((f.tile_width + CELL - 1) & ~(CELL - 1)) * sizeof(float);
       own_memory = memory + worker * (window_bytes(across_plane, 1) + window_bytes(down_plane, TERMS) + band_bytes +
-                                      across_plane / CELL * sizeof(struct ChoiceParams));
+                                      across_plane / CELL * sizeof(struct ChoiceParams) + down_plane);
     }
     const int tile = atomic_inc(counters + COUNTER_NEXT_TILE);
     if (tile >= f.tiles_x * f.tiles_y) break;

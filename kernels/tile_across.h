@@ -12,11 +12,17 @@ SHARED void across_flat(const Windows* w, const Tables* tables, struct ChoicePar
   global const struct RungParams* rung = tables->rungs + choice.rung;
   global const int* offsets = tables->offsets + rung->first_offset;
   global const struct FlatWeight* weights = tables->flat_weights + choice.weight;
-  for (int x = x_begin; x < x_end; x += V) {
+  for (int x = x_begin; x < x_end; x += AT_ONCE * V) {
+    const int next = x + V < x_end ? x + V : x;
     fetch_later(later, x);
-    vrgb result[TERMS];
-    scatter_clean(result, &pass, rung, offsets, weights, x, y);
-    for (int t = 0; t < TERMS; ++t) store_rgb(to + 3 * t * plane, plane, x, result[t]);
+    fetch_later(later, next);
+    const Pixel pixels[AT_ONCE] = {{x, y}, {next, y}};
+    vrgb result[AT_ONCE][TERMS];
+    scatter_clean(result, &pass, rung, offsets, weights, pixels);
+    for (int t = 0; t < TERMS; ++t) {
+      store_rgb(to + 3 * t * plane, plane, x, result[0][t]);
+      store_rgb(to + 3 * t * plane, plane, next, result[1][t]);
+    }
   }
 }
 

@@ -90,7 +90,9 @@ typedef struct {
   Window down;
   global float* band;                   // light after both passes, 3 planes of BAND rows
   global struct ChoiceParams* choices;  // of a row of cells in the horizontal pass
-  int x_begin, x_end;                   // that the horizontal pass computes
+  global int* row_at;                   // of TapPlaces, of the rows that those of a band read
+  global int* side_at;
+  int x_begin, x_end;  // that the horizontal pass computes
   int y_begin, y_end;
   int own_x_begin, own_x_end;  // of the tile
   int own_y_begin, own_y_end;
@@ -167,5 +169,8 @@ static inline Windows windows_of(const struct FrameParams* f, const Tables* tabl
   w.down = window_in(p, down_plane, TERMS, memory + window_bytes(across_plane, 1));
   w.band = (global float*)(memory + window_bytes(across_plane, 1) + window_bytes(down_plane, TERMS));
   w.choices = (global struct ChoiceParams*)(w.band + 3 * BAND * (size_t)((f->tile_width + CELL - 1) & ~(CELL - 1)));
+  // Rows of the ring, and twice as many sides as there are pairs, which is less than the rows.
+  w.row_at = (global int*)(w.choices + across_plane / CELL);
+  w.side_at = w.row_at + down_plane / 8;
   return w;
 }

@@ -133,7 +133,7 @@ inline constexpr int tile_kinds = 8;
 /// What became of each tile, row by row.
 struct TileMap {
   int tile_width = 0;   ///< px
-  int tile_height = 0;  ///< px; lower where little of the frame scatters, unless the options say it
+  int tile_height = 0;  ///< px; fitted to what scatters and how far, unless the options say it
   int columns = 0;
   int rows = 0;
   std::vector<TileKind> kinds;

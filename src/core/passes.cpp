@@ -75,26 +75,22 @@ std::array<params::RotationParams, ROTATIONS> rotations(const Camera& camera) {
 RunSizes run_sizes(const Plan::State& plan, int width, int height) {
   constexpr int tile_width_px = 240;
   constexpr int most_tile_px = 512;
+  constexpr int most_turned_tile_px = 256;
   constexpr int least_tile_px = 32;
-  constexpr int least_sparse_tile_px = 64;
   const Options& options = plan.options;
   RunSizes sizes{};
   sizes.width = width;
   sizes.height = height;
+  sizes.turns_taps = options.jitter > 0;
   sizes.tile_width = options.tile_width > 0 ? options.tile_width : tile_width_px;
   sizes.tile_height = sizes.least_tile_height = options.tile_height;
   sizes.workers = plan.tiled ? std::max(1, plan.device.info().compute_units) : 0;
   if (sizes.tile_height == 0) {
-    // Tall tiles compute few rows twice, but every worker should get some.
-    sizes.tile_height = most_tile_px;
-    while (sizes.tile_height > least_tile_px &&
-           sizes.tiles_x() * sizes.tiles_y(sizes.tile_height) < TILES_PER_WORKER * std::max(1, sizes.workers)) {
-      sizes.tile_height /= 2;
-    }
-    sizes.least_tile_height = std::min(sizes.tile_height, least_sparse_tile_px);
+    // The device fits the height to what scatters; with turned taps, memory grows with it.
+    sizes.tile_height = sizes.turns_taps ? most_turned_tile_px : most_tile_px;
+    sizes.least_tile_height = least_tile_px;
   }
   sizes.terms = plan.terms_per_material;
-  sizes.turns_taps = options.jitter > 0;
   sizes.side_px = plan.is_sheared ? MOST_SIDE : 0;
   sizes.farthest_px = plan.farthest_px;
   sizes.has_pixel_width = plan.has_pixel_width;

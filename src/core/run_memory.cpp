@@ -61,7 +61,7 @@ std::size_t RunSizes::windows_bytes() const {
   const std::size_t band_bytes = static_cast<std::size_t>(round_up(tile_width, CELL)) * 3 * BAND * sizeof(float);
   return workers *
          (window_bytes(across_plane(), 1, has_pixel_width) + window_bytes(down_plane(), terms, has_pixel_width) +
-          band_bytes + across_plane() / CELL * sizeof(params::ChoiceParams));
+          band_bytes + across_plane() / CELL * sizeof(params::ChoiceParams) + down_plane());
 }
 
 params::TexelLevels RunSizes::levels() const {

@@ -13,7 +13,7 @@ namespace dermis {
 struct RunSizes {
   int width, height;
   int tile_width;
-  int tile_height, least_tile_height;  ///< where little of the frame scatters, tiles are lower
+  int tile_height, least_tile_height;  ///< the device chooses between them
   int workers;                         ///< work-items that take tiles; 0 if the window is the frame
   int terms;                           ///< images of light between the passes
   int farthest_px;                     ///< no tap is farther
