@@ -134,6 +134,7 @@ void plot(const std::filesystem::path& path, const PictureMeasurement& measureme
       most = std::max(most, point.y);
     }
   }
+  if (longest == 0) return;  // --filter left no case of a series
   chart.settings +=
       fmt::format("\nset xrange [{}:{}]\nset yrange [{}:{}]", shortest * 0.9, longest * 1.1, least * 0.9, most * 1.2);
   draw_svg("--plot", path, 1100, 600, script_of(chart));

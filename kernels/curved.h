@@ -118,17 +118,20 @@ FORCED_INLINE int add_tap(Sums* sums, const struct FrameParams* f, const Pass* s
     if (!clean && (to_x <= -V || to_x >= f->width)) return 0;
     const size_t at = pixel_at(s->from, to_x, y + s->y_step * offset);
     tap.segment = load_floats(s->from->segment + at);
-    if (!clean) {
-      // Elsewhere there is no surface to weigh, and the light is finite.
-      vint there = AS_MASK((load_bytes(s->from->material + at) & MATERIAL_MASK) == target->material);
-      if (side != 0) there &= AS_MASK(to_x + int_lane_numbers() >= 0) & AS_MASK(to_x + int_lane_numbers() < f->width);
-      tap.segment = keep(there, tap.segment);
-    }
     const vfloat z = load_floats(s->from->depth + at);
     tap.r_squared = side == 0 ? squared_distance_along(f, &target->points, z, (float)offset, s->axis)
                               : squared_distance_down(f, &target->points, z, (vfloat)((float)side), (float)offset);
 #pragma unroll
     for (int t = 0; t < TERMS; ++t) tap.light[t] = load_term(s, t, at);
+    if (!clean) {
+      // Elsewhere there is no surface to weigh. The light there is finite, but beyond the frame.
+      vint there = AS_MASK((load_bytes(s->from->material + at) & MATERIAL_MASK) == target->material);
+      if (side != 0) {
+        there &= AS_MASK(to_x + int_lane_numbers() >= 0) & AS_MASK(to_x + int_lane_numbers() < f->width);
+        for (int t = 0; t < TERMS; ++t) tap.light[t] = keep_rgb(there, tap.light[t]);
+      }
+      tap.segment = keep(there, tap.segment);
+    }
   }
   add_taps(sums, target, its, &tap);
   return has_more;

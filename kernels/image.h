@@ -119,6 +119,13 @@ static inline int is_interleaved(const RgbRow* row, int format, int value_bytes,
          row->g.at - row->r.at == value_bytes && row->b.at - row->r.at == 2 * value_bytes;
 }
 
+#ifdef __has_builtin
+#if __has_builtin(__builtin_shufflevector)
+#define INTERLEAVES_FLOATS
+#endif
+#endif
+
+#ifdef INTERLEAVES_FLOATS
 // Sixteen pixels of three floats each.
 SHARED vrgb read_interleaved_floats(global const float* at) {
   const float16 p = load_floats(at), q = load_floats(at + 16), s = load_floats(at + 32);
@@ -141,6 +148,8 @@ SHARED void write_interleaved_floats(global float* at, vrgb v) {
   to[2] = __builtin_shufflevector(s, v.b, 26, 1, 2, 27, 4, 5, 28, 7, 8, 29, 10, 11, 30, 13, 14, 31);
 }
 
+#endif
+
 // Sixteen pixels of four halves each, the fourth of which nobody looks at.
 SHARED vrgb read_interleaved_halves(global const uchar* at) {
   typedef ushort16 unaligned_halves __attribute__((aligned(2)));
@@ -158,9 +167,11 @@ SHARED vrgb read_interleaved_halves(global const uchar* at) {
 SHARED vrgb read_any_rgb(const RgbRow* row, int x) {
 #if V == 16
   const Row r = row->r;
+#ifdef INTERLEAVES_FLOATS
   if (x >= 0 && x + V <= r.width && is_interleaved(row, FORMAT_F32, 4, 3)) {
     return read_interleaved_floats((global const float*)r.at + 3 * x);
   }
+#endif
   // Another pixel has to follow, so that the fourth value of the last one is there.
   if (x >= 0 && x + V < r.width && is_interleaved(row, FORMAT_F16, 2, 4)) {
     return read_interleaved_halves(r.at + x * (Bytes)8);
@@ -233,7 +244,7 @@ FORCED_INLINE void write_values(global uchar* image, const struct ImageParams* p
 }
 
 SHARED void write_rgb(global uchar* image, const struct ImageParams* p, int x, int y, vrgb value, vint mask) {
-#if V == 16
+#ifdef INTERLEAVES_FLOATS
   if (p->format == FORMAT_F32 && p->pixel_stride == 12 && p->channel_stride == 4 && !any_bit(~mask)) {
     write_interleaved_floats((global float*)(image + byte_at(p, x, y, 0)), value);
     return;

@@ -31,11 +31,16 @@ void check_arguments(const FilterArguments& arguments) {
                                                       {"--fov", camera.fov_deg.has_value()},
                                                       {"--focal-px", camera.focal_px.has_value()},
                                                       {"--px-per-unit", camera.orthographic_px_per_unit.has_value()},
+                                                      {"--cryptomatte", !arguments.cryptomatte.empty()},
                                                       {"--quality", arguments.quality.given()},
+                                                      {"--seed", arguments.options.seed != 0},
                                                       {"--jitter", arguments.options.jitter != 0},
                                                       {"--shear", arguments.shear != "auto"},
                                                       {"--lighting", arguments.lighting != "raw"},
                                                       {"--bad-pixels", arguments.bad_pixels != "keep"},
+                                                      {"--translucency", arguments.translucency.wanted},
+                                                      {"--compare-methods", !arguments.compare_methods.empty()},
+                                                      {"--truth", !arguments.truth.empty()},
                                                       {"--preview", !arguments.preview.empty()},
                                                       {"--tile-map", !arguments.tile_map.empty()},
                                                       {"--reuse", arguments.reuse}};
@@ -44,6 +49,9 @@ void check_arguments(const FilterArguments& arguments) {
   }
   if (const std::string design = first_given(arguments.design); !design.empty())
     throw Error(ErrorCode::usage, "--space", "texture with " + design, "--space screen with it");
+  if (const std::string disc = first_given(arguments.disc); !disc.empty())
+    throw Error(ErrorCode::usage, "--space", "texture with " + disc, "--space screen with it");
+  check_translucency(arguments.translucency);
   if (!arguments.method.empty() && arguments.method != "gaussians" && arguments.method != "recursive")
     throw Error(ErrorCode::usage, "--method", arguments.method + " with --space texture", "gaussians or recursive");
   if (arguments.materials.profile.empty()) throw Error(ErrorCode::usage, "--profile", "nothing", "--profile PROFILE");

@@ -146,7 +146,7 @@ double TableCurve::spectrum(double omega) const {
     if (length * frequency > 1e5) continue;
     const auto value = [&](double r) { return r * segment.density(r) * j0(frequency * r); };
     if (length * frequency < 0.5) {
-      // off by 2e-16 of it, as 12 points are over 8 radians
+      // off by less than 1e-10 of its light, as 12 points are over 8 radians
       sum += panel_integral<5>(segment.from, segment.to, value);
       continue;
     }

@@ -212,6 +212,18 @@ TEST_CASE("a Cryptomatte gives ids and mattes") {
   run_well(filter_arguments(scene, folder / "whole.exr", both_materials));
   CHECK(scattered("crypto.exr") != scattered("whole.exr"));
   CHECK(attribute(folder / "crypto.exr", "dermis:command").find("--cryptomatte") != std::string::npos);
+
+  const auto refused = [&](const Words& more, int code, const std::vector<std::string>& parts) {
+    Words words = both_materials;
+    words.insert(words.end(), more.begin(), more.end());
+    const MadeScene with_names = {folder / "crypto-in.exr", scene.camera};
+    check_refused(run_program(filter_arguments(with_names, folder / "none.exr", words)), code, parts);
+    CHECK_FALSE(std::filesystem::exists(folder / "none.exr"));
+  };
+  for (const char* malformed : {"Left half", "Left half=", "=1", "Left half=one", "Left half=65536"}) {
+    refused({"--cryptomatte", malformed}, 2, {"--cryptomatte: got " + std::string(malformed), "NAME=ID"});
+  }
+  refused({"--cryptomatte", "Nobody=1"}, 5, {"Nobody", "covers no pixel"});
 }
 
 TEST_CASE("methods are drawn side by side") {

@@ -129,6 +129,13 @@ TEST_CASE("what makes no sense of a texture is refused") {
   refused({"--mm-per-texel", "1", "--taps", "17"}, 2, {"--taps"});
   refused({"--mm-per-texel", "1", "--quality", "final"}, 2, {"--quality"});
   refused({"--mm-per-texel", "1", "--fov", "30"}, 2, {"--fov"});
+  refused({"--mm-per-texel", "1", "--cryptomatte", "head=1"}, 2, {"--cryptomatte"});
+  refused({"--mm-per-texel", "1", "--seed", "7"}, 2, {"--seed"});
+  refused({"--mm-per-texel", "1", "--translucency", "--lights", "l.json"}, 2, {"--translucency"});
+  refused({"--mm-per-texel", "1", "--lights", "l.json"}, 2, {"--lights"});
+  refused({"--mm-per-texel", "1", "--compare-methods", "sheet.png"}, 2, {"--compare-methods"});
+  refused({"--mm-per-texel", "1", "--samples", "9"}, 2, {"--space: got texture with --samples 9"});
+  refused({"--mm-per-texel", "1", "--prefilter"}, 2, {"--space: got texture with --prefilter"});
   refused({"--mm-per-texel", "1", "--albedo-mix", "0.82"}, 5, {"albedo"});
   check_refused(
       run_program({"filter", input, "-o", output, "--profile", "skin", "--mm-per-unit", "1", "--method", "recursive"}),
