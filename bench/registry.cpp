@@ -47,7 +47,7 @@ void add_methods(std::vector<Case>& cases) {
   for (const int count : {7, 17, 25, 33}) cases.push_back({.design = optimised(1, count)});
   for (const int count : {7, 17, 25, 33}) cases.push_back({.design = optimised(2, count)});
   for (const int count : {17, 25}) cases.push_back({.design = optimised(3, count)});
-  for (const int count : {7, 17, 25}) cases.push_back({.design = optimised(1, count), .sheared = false});
+  for (const int count : {3, 5, 7, 17, 25}) cases.push_back({.design = optimised(1, count), .sheared = false});
   cases.push_back({.design = optimised(2, 17), .sheared = false});
   cases.push_back({.design = {.model = Model::gaussians, .rank = 4, .count = 17}});
   for (const int samples : {21, 55}) {
