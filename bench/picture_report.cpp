@@ -120,7 +120,9 @@ void plot(const std::filesystem::path& path, const PictureMeasurement& measureme
                        .points = {}};
       for (const PictureRow& row : measurement.rows) {
         if (row.what.series != names[k]) continue;
-        series.points.push_back({row.ms, row.rel_l2[i], std::to_string(row.what.options.taps.count)});
+        const Options& options = row.what.options;
+        const int count = options.method == Method::disc ? options.disc.samples : options.taps.count;
+        series.points.push_back({row.ms, row.rel_l2[i], std::to_string(count)});
       }
       chart.series.push_back(std::move(series));
     }
