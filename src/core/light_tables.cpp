@@ -9,6 +9,7 @@
 #include <string>
 
 #include "core/image_buffers.hpp"
+#include "core/pixel_stage.hpp"
 
 namespace dermis {
 
@@ -214,13 +215,9 @@ BoundLights::BoundLights(const cl::Context& context, const cl::CommandQueue& que
     if (!lights[i].map.depth) continue;
     const CallerImage map = CheckedLight(lights[i], i).map();
     const ImageBuffers memory(context, lights[i].map.width, lights[i].map.height, std::span(&map, 1));
-    cl::Kernel kernel(program, "gather_map");
-    kernel.setArg(0, memory.buffer(0));
-    kernel.setArg(1, memory.layout(0));
-    kernel.setArg(2, lights[i].map.width);
-    kernel.setArg(3, maps_);
-    kernel.setArg(4, all[i].first_texel);
-    queue.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(lights[i].map.width, lights[i].map.height));
+    const ShadowMap& its_map = lights[i].map;
+    run_per_pixel(queue, program, "gather_map", its_map.width, its_map.height, memory.buffer(0), memory.layout(0),
+                  its_map.width, maps_, all[i].first_texel);
     queue.finish();  // before the buffer over the caller's memory goes
   }
 }

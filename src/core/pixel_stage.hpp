@@ -19,7 +19,10 @@ void run_per_pixel(const cl::CommandQueue& queue, const cl::Program& program, co
                    int height, const Arguments&... arguments) {
   cl::Kernel kernel(program, kernel_name);
   set_arguments(kernel, arguments...);
-  queue.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(width, height));
+  // PoCL compiles a kernel for every size of work-groups that it is launched with; GPUs know which one suits them.
+  const cl_device_type type = queue.getInfo<CL_QUEUE_DEVICE>().getInfo<CL_DEVICE_TYPE>();
+  const cl::NDRange local = (type & CL_DEVICE_TYPE_CPU) != 0 ? cl::NDRange(1, 1) : cl::NullRange;
+  queue.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(width, height), local);
 }
 
 /// An output and the input whose place it may take; -1 for none.
