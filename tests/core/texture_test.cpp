@@ -412,6 +412,7 @@ TEST_CASE("stretches come from positions", "[texture]") {
         sum += static_cast<double>(maps.u[at]);
       }
     }
-    if (width > 7) CHECK(sum / (width * height) == Approx(0.15 * mm_per_unit).epsilon(0.3 + 1 / mm_per_unit));
+    // Texels that know no neighbour count as 1 mm.
+    if (width > 7) CHECK(std::abs(sum / (width * height) - 0.15 * mm_per_unit) < 0.3 * 0.15 * mm_per_unit + 0.15);
   }
 }
