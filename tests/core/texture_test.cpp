@@ -412,7 +412,7 @@ TEST_CASE("stretches come from positions", "[texture]") {
         sum += static_cast<double>(maps.u[at]);
       }
     }
-    // Texels that know no neighbour count as 1 mm.
-    if (width > 7) CHECK(std::abs(sum / (width * height) - 0.15 * mm_per_unit) < 0.3 * 0.15 * mm_per_unit + 0.15);
+    // A quarter of the texels, which are broken or masked, count as 1 mm.
+    if (width > 7) CHECK(std::abs(sum / (width * height) - 0.15 * mm_per_unit) < 0.3 * 0.15 * mm_per_unit + 0.35);
   }
 }
