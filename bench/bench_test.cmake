@@ -48,6 +48,14 @@ if(NOT code EQUAL 0 OR count LESS 40 OR NOT count EQUAL unique_count
   message(SEND_ERROR "--list: exit code ${code}, ${count} names, ${unique_count} of them different")
 endif()
 
+# --filter chooses from the cases of a picture, too.
+execute_process(COMMAND ${BENCH} picture.exr --list --filter "rank 2, 17 taps$" RESULT_VARIABLE code
+                OUTPUT_VARIABLE names)
+if(NOT code EQUAL 0 OR NOT names STREQUAL "optimised, rank 2, 17 taps\n")
+  message(SEND_ERROR "--list of a picture: exit code ${code}, ${names}")
+endif()
+expect_failure(2 --filter picture.exr --filter "no such case")
+
 set(cases dermis/optimised/r2/t17/flat/320x180/w8/c100 naive/importance/r1/t17/flat/320x180/w8/c100)
 execute_process(
   COMMAND ${BENCH} --all --filter "^(dermis/optimised/r2|naive/importance/r1)/t17/flat/320x180/w8/c100$" --min-ms 1
