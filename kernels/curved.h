@@ -20,6 +20,7 @@ typedef struct {
   vrgb light[TERMS];
 } Tap;
 
+// Adds a tap of each lane to the sums.
 FORCED_INLINE void add_taps(Sums* sums, const Target* target, global const struct WeightParams* its, const Tap* tap) {
   const vfloat stretch = target->footprint * tap->segment;
   const vrgb length = times(target->reciprocal, stretch);
@@ -61,8 +62,8 @@ FORCED_INLINE Shears shears_at(const struct FrameParams* f, const Pass* s, vint 
 }
 
 #if SHEARED
-// Adds the pixels so many rows away, each lane its own to the side, of one run of PICKED pixels. Returns whether there
-// is another run.
+// The pixels so many rows away, each lane its own to the side, of one run of PICKED pixels. Returns whether there is
+// another run.
 FORCED_INLINE int load_sheared(Tap* tap, const struct FrameParams* f, const Pass* s, const Target* target,
                                const Shears* shears, int x, int y, int offset, int run, const int clean) {
   const Window* w = s->from;

@@ -169,7 +169,8 @@ static inline Windows windows_of(const struct FrameParams* f, const Tables* tabl
   w.down = window_in(p, down_plane, TERMS, memory + window_bytes(across_plane, 1));
   w.band = (global float*)(memory + window_bytes(across_plane, 1) + window_bytes(down_plane, TERMS));
   w.choices = (global struct ChoiceParams*)(w.band + 3 * BAND * (size_t)((f->tile_width + CELL - 1) & ~(CELL - 1)));
-  // Rows of the ring, and twice as many sides as there are pairs, which is less than the rows.
+  // Room for the rows of the ring, each of which is longer than 8 elements, and for the two sides of each pair: there
+  // are fewer pairs than rows that taps reach.
   w.row_at = (global int*)(w.choices + across_plane / CELL);
   w.side_at = w.row_at + down_plane / 8;
   return w;
