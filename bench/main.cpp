@@ -8,15 +8,15 @@
 #include <functional>
 
 #include "dermis/error.hpp"
-#include "matching.hpp"
-#include "paper.hpp"
-#include "picture_report.hpp"
-#include "plots.hpp"
-#include "progress.hpp"
-#include "registry.hpp"
-#include "report.hpp"
-#include "start_up.hpp"
-#include "stress.hpp"
+#include "measure/matching.hpp"
+#include "paper/paper.hpp"
+#include "report/picture_report.hpp"
+#include "report/plots.hpp"
+#include "support/progress.hpp"
+#include "measure/registry.hpp"
+#include "report/report.hpp"
+#include "measure/start_up.hpp"
+#include "stress/stress.hpp"
 
 namespace {
 

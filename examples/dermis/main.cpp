@@ -9,7 +9,7 @@
 #include <string>
 #include <string_view>
 
-#include "commands.hpp"
+#include "commands/commands.hpp"
 #include "dermis/error.hpp"
 #include "dermis/version.hpp"
 

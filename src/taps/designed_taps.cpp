@@ -5,7 +5,7 @@
 #include <map>
 #include <utility>
 
-#include "taps/gaussian_mixture.hpp"
+#include "taps/model/gaussian_mixture.hpp"
 
 namespace dermis {
 

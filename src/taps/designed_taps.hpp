@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "dermis/taps.hpp"
-#include "taps/expected_error.hpp"
-#include "taps/tap_fit.hpp"
-#include "taps/tap_runs.hpp"
+#include "taps/prediction/expected_error.hpp"
+#include "taps/placement/tap_fit.hpp"
+#include "taps/placement/tap_runs.hpp"
 
 namespace dermis {
 

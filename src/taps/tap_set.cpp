@@ -6,7 +6,7 @@
 
 #include "taps/check_design.hpp"
 #include "taps/designed_taps.hpp"
-#include "taps/quanta.hpp"
+#include "taps/placement/quanta.hpp"
 #include "taps/tap_budget.hpp"
 
 namespace dermis {

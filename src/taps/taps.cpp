@@ -7,9 +7,9 @@
 
 #include "taps/check_design.hpp"
 #include "taps/designed_taps.hpp"
-#include "taps/plane_weights.hpp"
-#include "taps/quanta.hpp"
-#include "taps/radial_table.hpp"
+#include "taps/tables/plane_weights.hpp"
+#include "taps/placement/quanta.hpp"
+#include "taps/tables/radial_table.hpp"
 #include "taps/tap_budget.hpp"
 
 namespace dermis {

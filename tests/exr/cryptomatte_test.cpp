@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "catch.hpp"
+#include "support/catch.hpp"
 #include "dermis/exr.hpp"
-#include "failure.hpp"
+#include "support/failure.hpp"
 
 using dermis::ErrorCode;
 using dermis::Format;

@@ -7,14 +7,14 @@
 #include <csignal>
 #include <cstring>
 
-#include "catch.hpp"
+#include "support/catch.hpp"
 #include "dermis/exr.hpp"
 #include "exr/header.hpp"
-#include "failure.hpp"
-#include "random.hpp"
-#include "raw_exr.hpp"
-#include "stored_channels.hpp"
-#include "temporary_folder.hpp"
+#include "support/failure.hpp"
+#include "support/random.hpp"
+#include "exr/raw_exr.hpp"
+#include "exr/stored_channels.hpp"
+#include "exr/temporary_folder.hpp"
 
 using dermis::ErrorCode;
 using dermis::Format;

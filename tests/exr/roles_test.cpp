@@ -1,11 +1,11 @@
 #include <algorithm>
 #include <cstring>
 
-#include "catch.hpp"
+#include "support/catch.hpp"
 #include "dermis/exr.hpp"
-#include "failure.hpp"
-#include "random.hpp"
-#include "temporary_folder.hpp"
+#include "support/failure.hpp"
+#include "support/random.hpp"
+#include "exr/temporary_folder.hpp"
 
 using dermis::ErrorCode;
 using dermis::Format;

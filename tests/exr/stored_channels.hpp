@@ -7,7 +7,7 @@
 #include <map>
 #include <string>
 
-#include "catch.hpp"
+#include "support/catch.hpp"
 
 struct StoredChannel {
   OIIO::TypeDesc type;

@@ -4,15 +4,15 @@
 #include <cmath>
 #include <vector>
 
-#include "catch.hpp"
+#include "support/catch.hpp"
 #include "dermis/oracle/reference.hpp"
 #include "dermis/oracle/scenes.hpp"
-#include "float_filter.hpp"
-#include "made_frame.hpp"
-#include "made_taps.hpp"
-#include "random.hpp"
-#include "random_case.hpp"
-#include "separable_run.hpp"
+#include "oracle/float_filter.hpp"
+#include "oracle/made_frame.hpp"
+#include "oracle/made_taps.hpp"
+#include "support/random.hpp"
+#include "oracle/random_case.hpp"
+#include "oracle/separable_run.hpp"
 
 namespace dermis::oracle {
 

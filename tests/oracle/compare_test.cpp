@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "catch.hpp"
+#include "support/catch.hpp"
 #include "dermis/error.hpp"
 
 namespace dermis::oracle {

@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "dermis/oracle/reference.hpp"
-#include "made_frame.hpp"
-#include "made_taps.hpp"
-#include "separable_run.hpp"
+#include "oracle/made_frame.hpp"
+#include "oracle/made_taps.hpp"
+#include "oracle/separable_run.hpp"
 
 namespace dermis::oracle {
 

@@ -5,12 +5,12 @@
 #include <span>
 #include <vector>
 
-#include "catch.hpp"
+#include "support/catch.hpp"
 #include "dermis/oracle/reference.hpp"
-#include "flat_run.hpp"
-#include "made_frame.hpp"
-#include "made_taps.hpp"
-#include "separable_run.hpp"
+#include "oracle/flat_run.hpp"
+#include "oracle/made_frame.hpp"
+#include "oracle/made_taps.hpp"
+#include "oracle/separable_run.hpp"
 
 namespace dermis::oracle {
 

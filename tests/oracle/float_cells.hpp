@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "dermis/oracle/reference.hpp"
-#include "float_surface.hpp"
-#include "made_frame.hpp"
+#include "oracle/float_surface.hpp"
+#include "oracle/made_frame.hpp"
 
 struct FloatCell {
   bool flat = false;

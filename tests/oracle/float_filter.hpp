@@ -12,9 +12,9 @@
 #include <vector>
 
 #include "dermis/oracle/reference.hpp"
-#include "float_cells.hpp"
-#include "float_surface.hpp"
-#include "made_frame.hpp"
+#include "oracle/float_cells.hpp"
+#include "oracle/float_surface.hpp"
+#include "oracle/made_frame.hpp"
 
 /// What a device is free to do.
 struct FloatStyle {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "dermis/oracle/reference.hpp"
-#include "made_frame.hpp"
+#include "oracle/made_frame.hpp"
 
 struct FloatPixel {
   int material = -1;

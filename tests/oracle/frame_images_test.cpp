@@ -1,4 +1,4 @@
-#include "oracle/frame_images.hpp"
+#include "oracle/screen/frame_images.hpp"
 
 #include <cmath>
 #include <cstddef>
@@ -7,9 +7,9 @@
 #include <limits>
 #include <vector>
 
-#include "catch.hpp"
+#include "support/catch.hpp"
 #include "dermis/error.hpp"
-#include "random.hpp"
+#include "support/random.hpp"
 
 namespace dermis::oracle {
 

@@ -1,8 +1,8 @@
-#include "oracle/gauss_legendre.hpp"
+#include "oracle/math/gauss_legendre.hpp"
 
 #include <cmath>
 
-#include "catch.hpp"
+#include "support/catch.hpp"
 
 namespace dermis::oracle {
 

@@ -3,12 +3,12 @@
 #include <cmath>
 #include <span>
 
-#include "catch.hpp"
+#include "support/catch.hpp"
 #include "dermis/oracle/compare.hpp"
 #include "dermis/oracle/reference.hpp"
 #include "dermis/oracle/scenes.hpp"
 #include "dermis/profile.hpp"
-#include "made_frame.hpp"
+#include "oracle/made_frame.hpp"
 
 namespace dermis::oracle {
 

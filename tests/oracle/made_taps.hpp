@@ -10,7 +10,7 @@
 
 #include "dermis/oracle/reference.hpp"
 #include "dermis/taps.hpp"
-#include "made_table.hpp"
+#include "oracle/made_table.hpp"
 
 /// Light of a Gaussian within |x| < r.
 inline double gaussian_strip(double r_mm, double sigma_mm) { return std::erf(r_mm / (sigma_mm * std::numbers::sqrt2)); }

@@ -1,13 +1,13 @@
-#include "oracle/radial_table.hpp"
+#include "oracle/math/radial_table.hpp"
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdint>
 
-#include "catch.hpp"
-#include "made_table.hpp"
-#include "random.hpp"
+#include "support/catch.hpp"
+#include "oracle/made_table.hpp"
+#include "support/random.hpp"
 
 namespace dermis::oracle {
 

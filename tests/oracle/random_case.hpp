@@ -10,9 +10,9 @@
 
 #include "dermis/oracle/reference.hpp"
 #include "dermis/plan.hpp"
-#include "made_frame.hpp"
-#include "made_taps.hpp"
-#include "random.hpp"
+#include "oracle/made_frame.hpp"
+#include "oracle/made_taps.hpp"
+#include "support/random.hpp"
 
 namespace dermis::oracle {
 

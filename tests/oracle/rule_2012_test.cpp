@@ -3,9 +3,9 @@
 #include <cmath>
 #include <vector>
 
-#include "catch.hpp"
+#include "support/catch.hpp"
 #include "dermis/error.hpp"
-#include "made_frame.hpp"
+#include "oracle/made_frame.hpp"
 
 using dermis::Camera;
 using dermis::oracle::Picture;

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <set>
 
-#include "catch.hpp"
+#include "support/catch.hpp"
 #include "dermis/error.hpp"
 
 namespace dermis::oracle {

@@ -4,13 +4,13 @@
 #include <limits>
 #include <vector>
 
-#include "catch.hpp"
+#include "support/catch.hpp"
 #include "dermis/error.hpp"
 #include "dermis/oracle/reference.hpp"
-#include "made_frame.hpp"
-#include "made_taps.hpp"
-#include "random.hpp"
-#include "separable_run.hpp"
+#include "oracle/made_frame.hpp"
+#include "oracle/made_taps.hpp"
+#include "support/random.hpp"
+#include "oracle/separable_run.hpp"
 
 namespace dermis::oracle {
 

@@ -3,11 +3,11 @@
 #include <cmath>
 #include <span>
 
-#include "catch.hpp"
+#include "support/catch.hpp"
 #include "dermis/oracle/reference.hpp"
-#include "made_frame.hpp"
-#include "made_taps.hpp"
-#include "separable_run.hpp"
+#include "oracle/made_frame.hpp"
+#include "oracle/made_taps.hpp"
+#include "oracle/separable_run.hpp"
 
 namespace dermis::oracle {
 

@@ -5,8 +5,8 @@
 #include <span>
 
 #include "dermis/oracle/reference.hpp"
-#include "made_frame.hpp"
-#include "made_taps.hpp"
+#include "oracle/made_frame.hpp"
+#include "oracle/made_taps.hpp"
 
 namespace dermis::oracle {
 

@@ -5,13 +5,13 @@
 #include <span>
 #include <vector>
 
-#include "catch.hpp"
+#include "support/catch.hpp"
 #include "dermis/oracle/compare.hpp"
 #include "dermis/oracle/reference.hpp"
 #include "dermis/oracle/scenes.hpp"
-#include "made_frame.hpp"
-#include "made_taps.hpp"
-#include "random.hpp"
+#include "oracle/made_frame.hpp"
+#include "oracle/made_taps.hpp"
+#include "support/random.hpp"
 
 namespace dermis::oracle {
 

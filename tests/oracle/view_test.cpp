@@ -1,9 +1,9 @@
-#include "oracle/view.hpp"
+#include "oracle/screen/view.hpp"
 
 #include <cmath>
 
-#include "catch.hpp"
-#include "random.hpp"
+#include "support/catch.hpp"
+#include "support/random.hpp"
 
 namespace dermis::oracle {
 

@@ -1,13 +1,13 @@
 // The bounds of a weighted sum against float32 sums whose weights and values are as far off as they may be.
-#include "oracle/weighted_sum.hpp"
+#include "oracle/math/weighted_sum.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
 
-#include "catch.hpp"
-#include "random.hpp"
+#include "support/catch.hpp"
+#include "support/random.hpp"
 
 namespace dermis::oracle {
 

@@ -11,14 +11,14 @@
 #include <string>
 #include <vector>
 
-#include "catch.hpp"
+#include "support/catch.hpp"
 #include "dermis/exr.hpp"
 #include "dermis/plan.hpp"
 #include "dermis/profile.hpp"
 #include "dermis/taps.hpp"
-#include "made_picture.hpp"
-#include "run_program.hpp"
-#include "temporary_folder.hpp"
+#include "program/made_picture.hpp"
+#include "program/run_program.hpp"
+#include "program/temporary_folder.hpp"
 
 using dermis::TapsDesign;
 using dermis::exr::Picture;

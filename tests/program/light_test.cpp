@@ -7,12 +7,12 @@
 #include <string>
 #include <vector>
 
-#include "catch.hpp"
+#include "support/catch.hpp"
 #include "dermis/exr.hpp"
-#include "made_picture.hpp"
-#include "random.hpp"
-#include "run_program.hpp"
-#include "temporary_folder.hpp"
+#include "program/made_picture.hpp"
+#include "support/random.hpp"
+#include "program/run_program.hpp"
+#include "program/temporary_folder.hpp"
 
 namespace fs = std::filesystem;
 using dermis::exr::Picture;

@@ -8,13 +8,13 @@
 #include <string>
 #include <vector>
 
-#include "catch.hpp"
+#include "support/catch.hpp"
 #include "dermis/exr.hpp"
 #include "dermis/profile.hpp"
 #include "dermis/version.hpp"
-#include "made_picture.hpp"
-#include "run_program.hpp"
-#include "temporary_folder.hpp"
+#include "program/made_picture.hpp"
+#include "program/run_program.hpp"
+#include "program/temporary_folder.hpp"
 
 using dermis::exr::Picture;
 using nlohmann::json;

@@ -1,4 +1,4 @@
-#include "made_picture.hpp"
+#include "program/made_picture.hpp"
 
 #include <algorithm>
 #include <cstddef>
@@ -6,9 +6,9 @@
 #include <span>
 #include <utility>
 
-#include "catch.hpp"
+#include "support/catch.hpp"
 #include "dermis/oracle/compare.hpp"
-#include "run_program.hpp"
+#include "program/run_program.hpp"
 
 using dermis::exr::Picture;
 

@@ -1,4 +1,4 @@
-#include "run_program.hpp"
+#include "program/run_program.hpp"
 
 #include <sys/wait.h>
 
@@ -7,8 +7,8 @@
 #include <fstream>
 #include <iterator>
 
-#include "catch.hpp"
-#include "temporary_folder.hpp"
+#include "support/catch.hpp"
+#include "program/temporary_folder.hpp"
 
 namespace {
 

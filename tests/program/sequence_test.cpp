@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "catch.hpp"
-#include "made_picture.hpp"
-#include "run_program.hpp"
-#include "temporary_folder.hpp"
+#include "support/catch.hpp"
+#include "program/made_picture.hpp"
+#include "program/run_program.hpp"
+#include "program/temporary_folder.hpp"
 
 namespace fs = std::filesystem;
 using Words = std::vector<std::string>;

@@ -12,10 +12,10 @@
 #include <utility>
 #include <vector>
 
-#include "catch.hpp"
-#include "random.hpp"
-#include "run_program.hpp"
-#include "temporary_folder.hpp"
+#include "support/catch.hpp"
+#include "support/random.hpp"
+#include "program/run_program.hpp"
+#include "program/temporary_folder.hpp"
 
 namespace fs = std::filesystem;
 using nlohmann::json;

@@ -1,0 +1,63 @@
+// What is measured: one way of filtering one scene.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "dermis/plan.hpp"
+#include "dermis/taps.hpp"
+#include "measure/scene.hpp"
+
+namespace dermis::bench {
+
+/// Who filters.
+enum class Family {
+  dermis,             ///< the separable method
+  dermis_exact,       ///< the surface integral by brute force
+  dermis_disc,        ///< samples of it on discs
+  texture_gaussians,  ///< dermis on the picture as a texture, a chain of six Gaussians
+  texture_recursive,  ///< the same by recursion
+  naive,              ///< an OpenCL kernel, one work-item per pixel and pass
+  rule_2012,          ///< the same with the rules of the 2012 shader
+  simd,               ///< C++ with vectors, constant offsets, no depth
+  simd_depth,         ///< the same with weights that fall with the difference of depth
+  opencv_separable,   ///< sepFilter2D with a dense kernel per channel
+  opencv_bilateral,   ///< bilateralFilter, 15 x 15
+  fft,                ///< the exact convolution by FFTW in float
+  start_up,           ///< the first plan of a process
+};
+
+std::string_view name_of(Family family);
+
+/// How the images of a caller lie in memory.
+enum class Memory { planar_f32, interleaved_f16 };
+
+/// The part of the table that a case stands in.
+enum class Group { methods, coverage, width, pixels, threads, flat, texture, start_up };
+inline constexpr Group all_groups[] = {Group::methods, Group::coverage, Group::width,   Group::pixels,
+                                       Group::threads, Group::flat,     Group::texture, Group::start_up};
+
+std::string_view title_of(Group group);
+
+struct Case {
+  Family family = Family::dermis;
+  Group group = Group::methods;
+  SceneSpec scene = {};
+  TapsDesign design = {.rank = 2};  ///< of dermis; of the opponents only `count`
+  double tolerance = 0;             ///< > 0: in place of the design, the cheapest that is predicted to be as good
+  DiscOptions disc = {};            ///< of dermis_disc
+  bool sheared = true;              ///< of dermis, as Options::sheared
+  int threads = 0;                  ///< of dermis; 0: all
+  Memory memory = Memory::planar_f32;
+  bool cache_is_filled = false;  ///< of a start-up: kernels were compiled by an earlier process
+
+  bool is_dermis() const {
+    return family == Family::dermis || family == Family::dermis_exact || family == Family::dermis_disc;
+  }
+  std::string model() const;   ///< empty where there is none
+  std::string method() const;  ///< the name up to the scene
+  std::string name() const;    ///< "dermis/optimised/r2/t17/spheres/1920x1080/w16/c100"
+};
+
+}  // namespace dermis::bench

@@ -1,0 +1,57 @@
+// Times and errors of many cases, measured side by side.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "measure/case.hpp"
+#include "dermis/device.hpp"
+
+namespace dermis::bench {
+
+/// How long to measure.
+struct Effort {
+  int rounds = 7;       ///< least runs of a case; slow ones stop after 1.5 s
+  double min_ms = 300;  ///< least time of all runs of a case
+  unsigned seed = 1;    ///< of the order within a round
+};
+
+/// What was found about one case. Times are of the wall clock.
+struct Row {
+  Case what;
+  double ms = 0;  ///< median
+  double ms_p10 = 0, ms_p90 = 0;
+  int runs = 0;
+  double copy_ratio = 0;  ///< ms / time of FrameCopy on a frame of that size
+  double loads = 0;       ///< image reads per pixel; 0 where that is not the measure
+  double gb_s = 0;        ///< 16 bytes per load: three floats of light and one of depth, from whatever cache
+  double gflop_s = 0;     ///< 12 per load: a multiply-add of light and one of the weight for three channels
+  std::optional<double> rel_l2, max_err;
+  std::string truth;
+  double plan_ms = 0;  ///< until it can run; of a start-up, the first plan of the process
+  double first_run_ms = 0;
+  double peak_mb = 0;  ///< memory beyond the scene's, at the worst moment until the first result; of a start-up, of all
+  std::optional<double> second_plan_ms;                    ///< of a start-up
+  std::optional<std::map<std::string, double>> stages_ms;  ///< of dermis: medians of Stats
+};
+
+struct Measurement {
+  DeviceInfo device;
+  double load_before = 0;  ///< what others wanted of the machine before it began: load_average()
+  std::map<std::pair<int, int>, double> copy_ms = {};  ///< median by size of frame
+  std::vector<Row> rows = {};                          ///< in the order of the cases
+};
+
+/// Told what is going on, and the share that is done, 0..1.
+using Report = std::function<void(double share, const std::string& what)>;
+
+/// Prepares each case and compares its first result with the truth; then goes round all of them, in random order, until
+/// each has had its runs.
+Measurement measure_cases(const std::vector<Case>& cases, const std::string& device_name, const Effort& effort,
+                          const Report& report);
+
+}  // namespace dermis::bench

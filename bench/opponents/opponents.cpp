@@ -1,0 +1,69 @@
+#include "opponents/opponents.hpp"
+
+#include <cmath>
+
+#include "dermis/error.hpp"
+
+namespace dermis::bench {
+
+const Profile& skin() { return preset("skin").profile; }
+
+int dense_reach_px(const SceneSpec& scene) {
+  constexpr double reach = 3.3;  // standard deviations: 99.9 % of a Gaussian, as far as dermis looks in rank 1
+  return static_cast<int>(std::lround(reach * scene.kernel_px));
+}
+
+double loads_of(const Case& what) {
+  switch (what.family) {
+    case Family::dermis:
+    case Family::start_up:
+      return (1.0 + what.design.rank) * what.design.count;
+    case Family::naive:
+    case Family::simd:
+    case Family::simd_depth:
+      return 2.0 * what.design.count;
+    case Family::rule_2012:
+      return 2.0 * (2 * what.design.count - 1);  // two pixels for every tap but the centre
+    case Family::opencv_separable:
+      return 2.0 * (2 * dense_reach_px(what.scene) + 1);
+    case Family::opencv_bilateral:
+      return 15 * 15;
+    case Family::dermis_disc:
+      return 4.0 * what.disc.samples;
+    case Family::dermis_exact:
+    case Family::texture_gaussians:
+    case Family::texture_recursive:
+    case Family::fft:
+      return 0;
+  }
+  return 0;
+}
+
+std::unique_ptr<Opponent> make_opponent(const Case& what, const Scene& scene, const Device& device) {
+  switch (what.family) {
+    case Family::dermis:
+    case Family::dermis_exact:
+    case Family::dermis_disc:
+    case Family::start_up:
+      return make_dermis(what, scene, device);
+    case Family::texture_gaussians:
+    case Family::texture_recursive:
+      return make_texture(what, scene, device);
+    case Family::naive:
+      return make_naive(what, scene, device);
+    case Family::rule_2012:
+      return make_rule_2012(what, scene, device);
+    case Family::simd:
+    case Family::simd_depth:
+      return make_simd(what, scene);
+    case Family::opencv_separable:
+      return make_opencv_separable(scene);
+    case Family::opencv_bilateral:
+      return make_opencv_bilateral(scene);
+    case Family::fft:
+      return make_fft(scene);
+  }
+  throw Error(ErrorCode::usage, "case", what.name(), "something that filters");
+}
+
+}  // namespace dermis::bench

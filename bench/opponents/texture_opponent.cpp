@@ -1,0 +1,45 @@
+// The scene as a texture whose texels all span as much: dermis in texture space.
+#include "measure/aligned.hpp"
+#include "dermis/texture.hpp"
+#include "opponents/opponents.hpp"
+
+namespace dermis::bench {
+
+namespace {
+
+class Texture final : public Opponent {
+ public:
+  Texture(const Case& what, const Scene& scene, const Device& device)
+      : scene_(scene),
+        plan_(
+            device, skin(), {},
+            {.method = what.family == Family::texture_recursive ? TextureMethod::recursive : TextureMethod::gaussians}),
+        scattered_(3 * scene.pixels()) {}
+
+  void run() override {
+    const Layout planar = {.format = Format::f32,
+                           .channel_stride = static_cast<std::ptrdiff_t>(scene_.pixels() * sizeof(float)),
+                           .pixel_stride = 4,
+                           .row_stride = 4L * scene_.spec.width};
+    plan_.run({.width = scene_.spec.width,
+               .height = scene_.spec.height,
+               .light = {.host = scene_.light.data(), .layout = planar},
+               .mm_per_texel = 1 / scene_.px_per_mm(),
+               .scattered = {.host = scattered_.data(), .layout = planar}});
+  }
+
+  std::vector<float> result() override { return {scattered_.begin(), scattered_.end()}; }
+
+ private:
+  const Scene& scene_;
+  TexturePlan plan_;
+  AlignedFloats scattered_;
+};
+
+}  // namespace
+
+std::unique_ptr<Opponent> make_texture(const Case& what, const Scene& scene, const Device& device) {
+  return std::make_unique<Texture>(what, scene, device);
+}
+
+}  // namespace dermis::bench

@@ -1,0 +1,60 @@
+#include "paper/claim.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace dermis::bench {
+
+namespace {
+
+/// "a, b and c".
+std::string listed(std::vector<std::string> names) {
+  const std::string last = names.back();
+  names.pop_back();
+  return names.empty() ? last : fmt::format("{} and {}", fmt::join(names, ", "), last);
+}
+
+}  // namespace
+
+std::string verdict_of(const std::vector<std::string>& holds_for, const std::vector<std::string>& fails_for) {
+  if (fails_for.empty()) return "holds";
+  if (holds_for.empty()) return "does not hold";
+  return fmt::format("holds for {}, not for {}", listed(holds_for), listed(fails_for));
+}
+
+std::string percent(double share) {
+  // Two digits, and three of what would be rounded to 100.
+  return share < 0.995 ? fmt::format("{:.2g} %", 100 * share) : fmt::format("{:.1f} %", 100 * share);
+}
+
+std::string percents(const std::vector<double>& shares) {
+  std::vector<std::string> texts;
+  texts.reserve(shares.size());
+  for (const double share : shares) texts.push_back(percent(share));
+  return fmt::format("{}", fmt::join(texts, ", "));
+}
+
+std::string table_of(const Claims& claims) {
+  std::string text =
+      "| where | the claim | counts as holding if | measured | verdict |\n"
+      "|---|---|---|---|---|\n";
+  for (const Claim& claim : claims) {
+    text += fmt::format("| {} | {} | {} | {} | **{}** |\n", claim.where, claim.text, claim.test, claim.measured,
+                        claim.verdict);
+  }
+  return text;
+}
+
+nlohmann::ordered_json json_of(const Claims& claims) {
+  nlohmann::ordered_json all;
+  for (const Claim& claim : claims) {
+    all[claim.id] = {{"where", claim.where},
+                     {"claim", claim.text},
+                     {"test", claim.test},
+                     {"measured", claim.numbers},
+                     {"verdict", claim.verdict}};
+  }
+  return all;
+}
+
+}  // namespace dermis::bench

@@ -1,0 +1,48 @@
+// Pictures to spread light on: the statistics of natural images, small dots, straight edges at any angle.
+#pragma once
+
+#include <Eigen/Core>
+#include <complex>
+#include <cstdint>
+#include <vector>
+
+#include "paper/lattice.hpp"
+
+namespace dermis::bench {
+
+/// The mean power of some pictures at the frequencies 0..half_px by 0..half_px, mirror images summed: all that the
+/// error of an even kernel depends on.
+class Pictures {
+ public:
+  /// Exponentials of noise whose amplitude falls as 1 / frequency, with a standard deviation of half their mean.
+  static Pictures natural(int count, std::uint32_t seed);
+  /// One bright disc on black.
+  static Pictures dot(double radius_px);
+
+  /// Relative L2 distance of what the products make of the pictures from what the profile does, all channels together.
+  double rel_l2(const Products& products, const Sample& sample) const;
+  /// The same, from what other products make of them.
+  double rel_l2(const Products& products, const Products& truth) const;
+
+ private:
+  Pictures();
+  void add(const std::vector<double>& picture);
+  double rel_l2(const Products& products, const Light& truth) const;
+
+  Eigen::MatrixXd power_;
+};
+
+/// Light on one side of a straight line through the middle, 0 on the other; pixels on the line have their share.
+class Edge {
+ public:
+  explicit Edge(double angle_degrees);
+
+  /// The largest difference, of 1, between what the products and what the profile make of the edge, away from the
+  /// border of the square.
+  double max_error(const Products& products, const Sample& sample) const;
+
+ private:
+  std::vector<std::complex<double>> spectrum_;
+};
+
+}  // namespace dermis::bench

@@ -1,0 +1,39 @@
+#include "arguments/cryptomatte_argument.hpp"
+
+#include <cstddef>
+#include <string_view>
+
+#include "dermis/error.hpp"
+#include "arguments/number_argument.hpp"
+
+namespace dermis::program {
+
+void add_cryptomatte_argument(CLI::App& app, std::vector<std::string>& arguments) {
+  app.add_option(
+         "--cryptomatte", arguments,
+         "pixels that this object, material or asset of the Cryptomatte in the picture covers most of carry the "
+         "material id, and what it covers is their matte; repeatable")
+      ->allow_extra_args(false)
+      ->type_name("NAME=ID");
+}
+
+NamedMattes load_named_mattes(const exr::Picture& picture, const std::vector<std::string>& arguments) {
+  constexpr int max_id = 65535;
+  constexpr float no_id = -1;
+  std::vector<std::string> names;
+  std::vector<float> ids;
+  for (const std::string& text : arguments) {
+    const std::size_t equals = text.rfind('=');
+    const auto id = equals == std::string::npos ? std::nullopt : parse_whole(std::string_view(text).substr(equals + 1));
+    if (!id || *id < 0 || *id > max_id || equals == 0)
+      throw Error(ErrorCode::usage, "--cryptomatte", text, "NAME=ID with an id from 0 to 65535, as Head=1");
+    names.push_back(text.substr(0, equals));
+    ids.push_back(static_cast<float>(*id));
+  }
+  exr::Mattes mattes = exr::load_cryptomatte(picture, names);
+  NamedMattes named{{}, std::move(mattes.share)};
+  for (const int name : mattes.name) named.ids.push_back(name < 0 ? no_id : ids[static_cast<std::size_t>(name)]);
+  return named;
+}
+
+}  // namespace dermis::program

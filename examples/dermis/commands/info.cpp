@@ -1,0 +1,228 @@
+// dermis info: what a picture holds, and what the filter would make of it.
+#include <fmt/format.h>
+
+#include <array>
+#include <cstdio>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "commands/commands.hpp"
+#include "dermis/error.hpp"
+#include "dermis/exr.hpp"
+#include "dermis/plan.hpp"
+#include "report/json_text.hpp"
+#include "files/loaded_frame.hpp"
+#include "arguments/material_arguments.hpp"
+#include "arguments/picture_arguments.hpp"
+#include "arguments/profile_argument.hpp"
+#include "report/role_text.hpp"
+#include "files/surface_pixels.hpp"
+
+namespace dermis::program {
+namespace {
+
+using exr::Role;
+using nlohmann::json;
+
+struct InfoArguments {
+  PictureArguments picture;
+  MaterialArguments materials;
+  bool json = false;
+};
+
+/// How far a profile reaches.
+struct Reach {
+  std::string profile;
+  double radius_mm = 0;
+  std::optional<std::array<double, 2>> radius_px;  ///< in x and y at the median depth, if camera and scale are known
+};
+
+struct Surface {
+  std::optional<int> id;  ///< none: every pixel
+  SurfacePixels pixels;
+  std::optional<Reach> reach;  ///< if a profile was given for it
+};
+
+struct Memory {
+  std::size_t working_bytes = 0;  ///< the filter's own images
+  std::size_t image_bytes = 0;    ///< the frame's
+};
+
+struct Info {
+  exr::Picture picture;
+  exr::Roles roles;
+  std::optional<exr::FoundCamera> camera;
+  std::string camera_problem;  ///< why there is none
+  std::vector<Surface> surfaces;
+  std::int64_t pixels_without_id = 0;
+  std::optional<Memory> memory;
+};
+
+void find_camera(Info& info, const exr::CameraHint& hint) {
+  try {
+    info.camera = exr::find_camera(info.picture, info.roles, hint);
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::role_missing) throw;
+    info.camera_problem = error.what();
+  }
+}
+
+Reach reach_of(const NamedProfile& named, const SurfacePixels& pixels, const Info& info,
+               const std::optional<double>& mm_per_unit) {
+  Reach reach{without_folders(named.text), kernel_radius_mm(named.profile), {}};
+  if (info.camera && mm_per_unit && pixels.median_depth_units) {
+    const auto px_per_mm = footprint(info.camera->camera, *pixels.median_depth_units, *mm_per_unit);
+    reach.radius_px = {reach.radius_mm * px_per_mm[0], reach.radius_mm * px_per_mm[1]};
+  }
+  return reach;
+}
+
+void find_surfaces(Info& info, const std::vector<NamedProfile>& profiles, const std::optional<double>& mm_per_unit) {
+  const std::vector<float> depth = exr::load_depth(info.picture, info.roles, info.camera.value_or(exr::FoundCamera{}));
+  MaterialCounts counts = count_materials(exr::load(info.picture, info.roles, Role::material), depth);
+  info.pixels_without_id = counts.without_id;
+  for (const NamedProfile& named : profiles) {
+    if (named.id) {
+      counts.by_id[*named.id];
+      continue;
+    }
+    Surface all{{}, count_surface(depth, exr::load(info.picture, info.roles, Role::mask)), {}};
+    all.reach = reach_of(named, all.pixels, info, mm_per_unit);
+    info.surfaces.push_back(all);
+  }
+  for (const auto& [id, pixels] : counts.by_id) {
+    Surface surface{id, pixels, {}};
+    for (const NamedProfile& named : profiles)
+      if (named.id == id) surface.reach = reach_of(named, pixels, info, mm_per_unit);
+    info.surfaces.push_back(surface);
+  }
+}
+
+std::size_t bytes_of_images(const LoadedFrame& loaded) {
+  const std::size_t inputs = loaded.light.size() + loaded.albedo.size() + loaded.depth.size() + loaded.material.size() +
+                             loaded.mask.size() + loaded.matte.size();
+  const std::size_t scattered = loaded.light.size();
+  return (inputs + scattered) * bytes_of(Format::f32);
+}
+
+/// What a run would need, if the roles are there and a device can tell.
+std::optional<Memory> find_memory(const Info& info, const std::vector<NamedProfile>& profiles) {
+  try {
+    const std::vector<NamedProfile> asked =
+        profiles.empty() ? std::vector<NamedProfile>{{{}, presets().front().name, presets().front().profile}}
+                         : profiles;
+    require_roles(info.picture, info.roles, asked, Options{});
+    const LoadedFrame loaded = load_frame(info.picture, info.roles, info.camera.value_or(exr::FoundCamera{}), asked);
+    const Plan plan(Device::open(), materials_of(asked), FrameDescription::of(loaded.frame()));
+    std::size_t images = bytes_of_images(loaded);
+    if (info.roles.has(Role::beauty)) {
+      const Format format = info.picture.view(info.roles[Role::beauty].front()).layout.format;
+      images += 2 * 3 * bytes_of(format) * loaded.depth.size();  // read and written
+    }
+    return Memory{plan.scratch_bytes(loaded.width, loaded.height), images};
+  } catch (const Error&) {
+    return std::nullopt;
+  }
+}
+
+json json_of(const exr::Window& window) {
+  return {{"x", window.x}, {"y", window.y}, {"width", window.width}, {"height", window.height}};
+}
+
+json json_of(const Surface& surface) {
+  json object = {{"id", surface.id ? json(*surface.id) : json(nullptr)}, {"pixels", surface.pixels.pixels}};
+  const auto& depth = surface.pixels.median_depth_units;
+  object["median_depth_units"] = depth ? json(*depth) : json(nullptr);
+  if (!surface.reach) return object;
+  object["profile"] = surface.reach->profile;
+  object["radius_mm"] = surface.reach->radius_mm;
+  object["radius_px"] = surface.reach->radius_px ? json(*surface.reach->radius_px) : json(nullptr);
+  return object;
+}
+
+std::string json_text_of(const Info& info, const std::string& path) {
+  json object = {{"file", path},
+                 {"width", info.picture.width()},
+                 {"height", info.picture.height()},
+                 {"data_window", json_of(info.picture.data_window())},
+                 {"display_window", json_of(info.picture.display_window())},
+                 {"pixel_aspect", info.picture.pixel_aspect()},
+                 {"compression", info.picture.compression()},
+                 {"channels", info.picture.channels().size()},
+                 {"roles", program::json_of(info.roles)},
+                 {"materials", json::array()},
+                 {"pixels_without_id", info.pixels_without_id}};
+  object["camera"] = info.camera ? program::json_of(*info.camera) : json(nullptr);
+  if (!info.camera) object["camera_problem"] = info.camera_problem;
+  for (const Surface& surface : info.surfaces) object["materials"].push_back(json_of(surface));
+  object["device_memory_bytes"] =
+      info.memory ? json{{"working", info.memory->working_bytes}, {"images", info.memory->image_bytes}} : json(nullptr);
+  return json_text(object);
+}
+
+std::string text_of(const exr::Window& window) {
+  return fmt::format("{} x {} at ({}, {})", window.width, window.height, window.x, window.y);
+}
+
+std::string text_of(const Surface& surface) {
+  std::string text =
+      fmt::format("  {:<8} {:>10} pixels", surface.id ? std::to_string(*surface.id) : "any", surface.pixels.pixels);
+  if (surface.pixels.median_depth_units)
+    text += fmt::format(", median depth {:.6g} units", *surface.pixels.median_depth_units);
+  if (surface.reach) {
+    text += fmt::format(", {}: radius {:.3g} mm", surface.reach->profile, surface.reach->radius_mm);
+    if (const auto& px = surface.reach->radius_px) text += fmt::format(", {:.3g} x {:.3g} px", (*px)[0], (*px)[1]);
+  }
+  return text + "\n";
+}
+
+std::string text_of(const Info& info, const std::string& path) {
+  std::string text = fmt::format("file            {}\n", path);
+  text += fmt::format("data window     {}\n", text_of(info.picture.data_window()));
+  text += fmt::format("display window  {}\n", text_of(info.picture.display_window()));
+  text += fmt::format("pixel aspect    {}\n", info.picture.pixel_aspect());
+  text += fmt::format("compression     {}\n", info.picture.compression());
+  text += fmt::format("channels        {}\n", info.picture.channels().size());
+  text += fmt::format("layer           {}\n", info.roles.layer.empty() ? "none" : info.roles.layer);
+  text += "roles\n";
+  for (const Role role : exr::all_roles)
+    text += fmt::format("  {:<13} {}\n", exr::name_of(role), program::text_of(info.roles[role]));
+  text += fmt::format("camera          {}\n",
+                      info.camera ? program::text_of(*info.camera) : "none, " + info.camera_problem);
+  if (!info.surfaces.empty()) text += "materials\n";
+  for (const Surface& surface : info.surfaces) text += text_of(surface);
+  if (info.pixels_without_id > 0) text += fmt::format("  {:<8} {:>10} pixels\n", "no id", info.pixels_without_id);
+  if (info.memory) {
+    constexpr double mib = 1024 * 1024;
+    text += fmt::format("device memory   {:.1f} MiB working images, {:.1f} MiB images of the frame\n",
+                        static_cast<double>(info.memory->working_bytes) / mib,
+                        static_cast<double>(info.memory->image_bytes) / mib);
+  }
+  return text;
+}
+
+int run_info(const InfoArguments& arguments) {
+  const std::vector<NamedProfile> profiles = parse_profiles(arguments.materials);
+  Info info{exr::Picture::read(arguments.picture.path), {}, {}, {}, {}, 0, {}};
+  info.roles = exr::find_roles(info.picture, arguments.picture.roles, arguments.picture.layer);
+  find_camera(info, arguments.picture.camera);
+  find_surfaces(info, profiles, arguments.picture.mm_per_unit);
+  info.memory = find_memory(info, profiles);
+  fmt::print("{}", arguments.json ? json_text_of(info, arguments.picture.path) : text_of(info, arguments.picture.path));
+  return 0;
+}
+
+}  // namespace
+
+Command add_info(CLI::App& parent) {
+  CLI::App* app = parent.add_subcommand("info", "what a picture holds, and what the filter would make of it");
+  const auto arguments = std::make_shared<InfoArguments>();
+  add_picture_arguments(*app, arguments->picture);
+  add_material_arguments(*app, arguments->materials);
+  app->add_flag("--json", arguments->json, "as JSON");
+  return {app, [arguments] { return run_info(*arguments); }};
+}
+
+}  // namespace dermis::program

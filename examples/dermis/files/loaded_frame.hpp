@@ -1,0 +1,41 @@
+/// The images of a picture that the filter reads, in memory as float.
+#pragma once
+
+#include <vector>
+
+#include "dermis/exr.hpp"
+#include "dermis/frame.hpp"
+#include "dermis/plan.hpp"
+#include "arguments/material_arguments.hpp"
+
+namespace dermis::program {
+
+/// A view of packed values; no image if there are none.
+inline Image image_of(const std::vector<float>& values) { return {.host = values.empty() ? nullptr : values.data()}; }
+
+struct LoadedFrame {
+  int width = 0;
+  int height = 0;
+  std::vector<float> light;   ///< RGB
+  std::vector<float> albedo;  ///< RGB, or empty
+  std::vector<float> depth;
+  std::vector<float> material;  ///< or empty
+  std::vector<float> mask;      ///< or empty
+  std::vector<float> matte;     ///< or empty
+
+  /// Views of these images, and nothing else of a frame.
+  Frame frame() const;
+};
+
+/// Throws Error(role_missing) if the picture lacks a role that these profiles and options need. `has_cryptomatte`: ids
+/// come from there.
+void require_roles(const exr::Picture& picture, const exr::Roles& roles, const std::vector<NamedProfile>& profiles,
+                   const Options& options, bool has_cryptomatte = false);
+
+/// The roles that the picture has, and the depth of its positions if it has no other; ids only if the profiles tell
+/// materials apart, from `cryptomatte` (NAME=ID) if that is not empty. Throws Error(input_unsupported) if a role has
+/// the wrong number of channels.
+LoadedFrame load_frame(const exr::Picture& picture, const exr::Roles& roles, const exr::FoundCamera& camera,
+                       const std::vector<NamedProfile>& profiles, const std::vector<std::string>& cryptomatte = {});
+
+}  // namespace dermis::program

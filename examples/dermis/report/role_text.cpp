@@ -1,0 +1,68 @@
+#include "report/role_text.hpp"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+#include <string_view>
+#include <vector>
+
+namespace dermis::program {
+namespace {
+
+using nlohmann::json;
+
+/// Names that differ after the last dot only: prefix.{R,G,B}.
+std::string text_of_group(const std::vector<std::string>& names) {
+  const std::size_t dot = names.front().rfind('.');
+  const std::size_t prefix = dot == std::string::npos ? 0 : dot + 1;
+  std::vector<std::string> ends;
+  for (const std::string& name : names) {
+    if (name.compare(0, prefix, names.front(), 0, prefix) != 0) return fmt::format("{}", fmt::join(names, ","));
+    ends.push_back(name.substr(prefix));
+  }
+  if (names.size() == 1 || prefix == 0) return fmt::format("{}", fmt::join(names, ","));
+  return fmt::format("{}{{{}}}", names.front().substr(0, prefix), fmt::join(ends, ","));
+}
+
+bool is_perspective(const Camera& camera) { return camera.projection == Camera::Projection::perspective; }
+
+}  // namespace
+
+std::string text_of(const exr::ChannelSum& channels) {
+  if (channels.empty()) return "missing";
+  std::vector<std::string> groups;
+  for (const auto& group : channels) groups.push_back(text_of_group(group));
+  return fmt::format("{}", fmt::join(groups, " + "));
+}
+
+std::string text_of(const exr::FoundCamera& found) {
+  const Camera& camera = found.camera;
+  const std::string kind =
+      is_perspective(camera) ? fmt::format("perspective, focal length {:.6g} x {:.6g} px, centre ({:.6g}, {:.6g})",
+                                           camera.scale_x, camera.scale_y, camera.center_x, camera.center_y)
+                             : fmt::format("orthographic, {:.6g} x {:.6g} px per unit", camera.scale_x, camera.scale_y);
+  const std::string residual =
+      found.source.starts_with("--") ? "" : fmt::format(", off by {:.2g} units at most", found.residual_units);
+  return fmt::format("{}, from {}{}", kind, found.source, residual);
+}
+
+json json_of(const exr::Roles& roles) {
+  json result = {{"layer", roles.layer}};
+  for (const exr::Role role : exr::all_roles) {
+    json& entry = result[std::string(exr::name_of(role))];
+    if (roles.has(role)) entry = roles[role];
+  }
+  return result;
+}
+
+json json_of(const exr::FoundCamera& found) {
+  return {{"projection", is_perspective(found.camera) ? "perspective" : "orthographic"},
+          {"scale_x", found.camera.scale_x},
+          {"scale_y", found.camera.scale_y},
+          {"center_x", found.camera.center_x},
+          {"center_y", found.camera.center_y},
+          {"source", found.source},
+          {"residual_units", found.residual_units}};
+}
+
+}  // namespace dermis::program

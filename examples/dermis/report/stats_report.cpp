@@ -1,0 +1,192 @@
+#include "report/stats_report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "dermis/version.hpp"
+#include "arguments/design_arguments.hpp"
+#include "report/json_text.hpp"
+#include "report/role_text.hpp"
+#include "report/tile_map.hpp"
+
+namespace dermis::program {
+namespace {
+
+using nlohmann::json;
+
+std::string_view name_of(Method method) {
+  return method == Method::exact ? "exact" : method == Method::disc ? "disc" : "separable";
+}
+
+json json_of(const DeviceInfo& device) {
+  return {{"name", device.name},
+          {"platform", device.platform},
+          {"driver", device.driver},
+          {"type", device.type},
+          {"compute_units", device.compute_units},
+          {"vector_width", device.vector_width},
+          {"memory_bytes", device.memory_bytes},
+          {"max_buffer_bytes", device.max_buffer_bytes}};
+}
+
+json or_null(const std::optional<double>& value) { return value ? json(*value) : json(nullptr); }
+
+json disc_of(const Options& options) {
+  if (options.method != Method::disc) return nullptr;
+  return {{"samples", options.disc.samples > 0 ? json(options.disc.samples) : json("auto")},
+          {"plane", options.disc.tangent_plane ? "tangent" : "screen"},
+          {"prefiltered", options.disc.prefiltered},
+          {"accumulate", options.disc.accumulate}};
+}
+
+json design_of(const MaterialReport& material) {
+  if (!material.design) return nullptr;
+  const TapsDesign& design = *material.design;
+  return {{"model", program::name_of(design.model)},
+          {"rank", design.rank},
+          {"taps", material.taps ? json(*material.taps) : json(nullptr)},
+          {"most_taps", design.count},
+          {"placement", program::name_of(design.placement)},
+          {"guide", design.model == Model::guided ? json(design.guide) : json(nullptr)},
+          {"non_negative", design.non_negative},
+          {"predicted_rel_l2", or_null(material.predicted_rel_l2)}};
+}
+
+json json_of(const MaterialReport& material) {
+  return {{"id", material.id ? json(*material.id) : json(nullptr)},
+          {"profile", material.profile},
+          {"radius_mm", material.radius_mm},
+          {"pixels", material.pixels},
+          {"pixel_mm", or_null(material.pixel_mm)},
+          {"design", design_of(material)}};
+}
+
+json times_of(const StatsReport& report) {
+  return {{"read", report.times.read_ms},       {"plan", report.times.plan_ms},
+          {"prepare", report.stats.prepare_ms}, {"classify", report.stats.classify_ms},
+          {"scatter", report.stats.scatter_ms}, {"finish", report.stats.finish_ms},
+          {"run", report.times.run_ms},         {"write", report.times.write_ms},
+          {"total", report.times.total_ms}};
+}
+
+std::string text_of(const MaterialReport& material) {
+  std::string text =
+      fmt::format("material {:<2} {}, {} pixels, radius {:.3g} mm\n", material.id ? std::to_string(*material.id) : "",
+                  material.profile, material.pixels, material.radius_mm);
+  if (material.design) {
+    const TapsDesign& design = *material.design;
+    text += fmt::format("            {} rank {}, {}{} taps, placement {}", program::name_of(design.model), design.rank,
+                        design.tolerance > 0 ? "up to " : "", design.count, program::name_of(design.placement));
+    if (design.model == Model::guided) text += fmt::format(", guide {}", design.guide);
+    if (design.non_negative) text += ", not negative";
+    text += '\n';
+  }
+  if (material.predicted_rel_l2)
+    text += fmt::format("            {} taps, predicted error {:.3g} % for pixels of {:.3g} mm\n", *material.taps,
+                        100 * *material.predicted_rel_l2, *material.pixel_mm);
+  return text;
+}
+
+double percent(std::int64_t part, std::int64_t whole) {
+  return whole > 0 ? 100.0 * static_cast<double>(part) / static_cast<double>(whole) : 0;
+}
+
+std::string counted(std::string_view name, std::int64_t part, std::int64_t whole) {
+  return fmt::format("  {:<18}{:>12}  {:5.1f} %\n", name, part, percent(part, whole));
+}
+
+std::string text_of_steps(const StatsReport& report) {
+  const Stats& stats = report.stats;
+  const StepTimes& times = report.times;
+  std::string text = "time, ms\n";
+  const auto line = [&](std::string_view name, double ms) { text += fmt::format("  {:<18}{:>12.1f}\n", name, ms); };
+  line("read", times.read_ms);
+  line("plan", times.plan_ms);
+  line("run", times.run_ms);
+  line("  prepare", stats.prepare_ms);
+  line("  classify", stats.classify_ms);
+  line("  scatter", stats.scatter_ms);
+  line("  finish", stats.finish_ms);
+  line("write", times.write_ms);
+  line("total", times.total_ms);
+  return text;
+}
+
+}  // namespace
+
+std::string text_of(const StatsReport& report) {
+  const Stats& stats = report.stats;
+  const Options& options = report.options;
+  std::string text = fmt::format("device      {} ({}, {} compute units)\n", report.device.name, report.device.platform,
+                                 report.device.compute_units);
+  text += fmt::format("camera      {}\n", text_of(report.camera));
+  text += fmt::format("method      {}", name_of(options.method));
+  if (options.method == Method::separable) {
+    text += fmt::format(", shear {}, jitter {}, seed {}", options.sheared ? "on" : "off", options.jitter, options.seed);
+  }
+  if (options.method == Method::disc) {
+    const DiscOptions& disc = options.disc;
+    text += fmt::format(", {} samples, {} plane, {}accumulate {}, seed {}",
+                        disc.samples > 0 ? std::to_string(disc.samples) : "21 or 55",
+                        disc.tangent_plane ? "tangent" : "screen", disc.prefiltered ? "prefiltered, " : "",
+                        disc.accumulate, options.seed);
+  }
+  if (!report.quality.empty()) text += fmt::format(", quality {}", report.quality);
+  if (report.tolerance) text += fmt::format(", tolerance {}", *report.tolerance);
+  text += '\n';
+  for (const MaterialReport& material : report.materials) text += text_of(material);
+  const auto tiles = static_cast<std::int64_t>(stats.tiles.kinds.size());
+  text += fmt::format("tiles       {}\n", tiles);
+  for (int kind = 0; kind < tile_kinds; ++kind) {
+    text += counted(name_of(static_cast<TileKind>(kind)), stats.count(static_cast<TileKind>(kind)), tiles);
+  }
+  text += fmt::format("pixels      {}\n", stats.pixels);
+  text += counted("scattered", stats.pixels_scattered, stats.pixels);
+  text += counted("without material", stats.pixels_without_material, stats.pixels);
+  text += counted("narrow", stats.pixels_narrow, stats.pixels);
+  text += counted("flat", stats.pixels_flat, stats.pixels);
+  text += counted("smooth", stats.pixels_smooth, stats.pixels);
+  text += counted("bad", stats.pixels_bad, stats.pixels);
+  if (options.method == Method::disc) text += counted("unlit", stats.pixels_unlit, stats.pixels);
+  text += fmt::format("channels    {}\n", 3 * stats.pixels_scattered);
+  text += counted("narrow", stats.channels_narrow, 3 * stats.pixels_scattered);
+  return text + text_of_steps(report);
+}
+
+std::string json_text_of(const StatsReport& report) {
+  const Stats& stats = report.stats;
+  json object = {{"version", DERMIS_VERSION},
+                 {"device", json_of(report.device)},
+                 {"method", name_of(report.options.method)},
+                 {"quality", report.quality.empty() ? json(nullptr) : json(report.quality)},
+                 {"tolerance", or_null(report.tolerance)},
+                 {"sheared", report.options.sheared},
+                 {"jitter", report.options.jitter},
+                 {"seed", report.options.seed},
+                 {"disc", disc_of(report.options)},
+                 {"times_ms", times_of(report)},
+                 {"camera", json_of(report.camera)},
+                 {"roles", json_of(report.roles)},
+                 {"materials", json::array()}};
+  object["tiles"] = {{"total", stats.tiles.kinds.size()}};
+  for (int kind = 0; kind < tile_kinds; ++kind) {
+    std::string name(name_of(static_cast<TileKind>(kind)));
+    std::replace(name.begin(), name.end(), ' ', '_');
+    object["tiles"][name] = stats.count(static_cast<TileKind>(kind));
+  }
+  object["pixels"] = {{"total", stats.pixels},
+                      {"scattered", stats.pixels_scattered},
+                      {"without_material", stats.pixels_without_material},
+                      {"narrow", stats.pixels_narrow},
+                      {"flat", stats.pixels_flat},
+                      {"smooth", stats.pixels_smooth},
+                      {"narrow_channels", stats.channels_narrow},
+                      {"bad", stats.pixels_bad},
+                      {"unlit", stats.pixels_unlit}};
+  for (const MaterialReport& material : report.materials) object["materials"].push_back(json_of(material));
+  return json_text(object);
+}
+
+}  // namespace dermis::program

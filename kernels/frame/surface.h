@@ -1,0 +1,47 @@
+// The visible surface: where the points of pixels lie, mm.
+#include "params.h"
+#include "base/vector.h"
+
+// V pixels of a row.
+typedef struct {
+  vfloat z;        // view depth
+  vfloat x_per_z;  // change of position with depth along the pixel's ray; 0 if orthographic
+  vfloat y_per_z;
+} Points;
+
+FORCED_INLINE Points points_at(const struct FrameParams* f, vfloat depth, int x, int y) {
+  Points p;
+  p.z = depth;
+  p.x_per_z = f->slope_x * (lane_numbers() + ((float)x + 0.5f - f->center_x));
+  p.y_per_z = (vfloat)(f->slope_y * ((float)y + 0.5f - f->center_y));
+  return p;
+}
+
+// Squared true distance to the points at depth z that lie (dx, dy) pixels away.
+FORCED_INLINE vfloat squared_distance(const struct FrameParams* f, const Points* p, vfloat z, vfloat dx, vfloat dy) {
+  const vfloat delta_z = z - p->z;
+  const vfloat delta_x = fma(p->x_per_z, delta_z, dx * fma(z, (vfloat)(f->slope_x), (vfloat)(f->mm_per_px_x)));
+  const vfloat delta_y = fma(p->y_per_z, delta_z, dy * fma(z, (vfloat)(f->slope_y), (vfloat)(f->mm_per_px_y)));
+  return fma(delta_x, delta_x, fma(delta_y, delta_y, delta_z * delta_z));
+}
+
+// The same for points of the row that lies `offset` pixels below, each of them so many columns to its side. To the side
+// 0 it gives the bits of squared_distance_along.
+FORCED_INLINE vfloat squared_distance_down(const struct FrameParams* f, const Points* p, vfloat z, vfloat side,
+                                           float offset) {
+  const vfloat delta_z = z - p->z;
+  const vfloat down = fma(p->y_per_z, delta_z, offset * fma(z, (vfloat)(f->slope_y), (vfloat)(f->mm_per_px_y)));
+  const vfloat across = fma(p->x_per_z, delta_z, side * fma(z, (vfloat)(f->slope_x), (vfloat)(f->mm_per_px_x)));
+  return fma(down, down, fma(across, across, delta_z * delta_z));
+}
+
+// The same along one axis.
+FORCED_INLINE vfloat squared_distance_along(const struct FrameParams* f, const Points* p, vfloat z, float offset,
+                                            int axis) {
+  const vfloat delta_z = z - p->z;
+  const vfloat along = axis == 0
+                           ? fma(p->x_per_z, delta_z, offset * fma(z, (vfloat)(f->slope_x), (vfloat)(f->mm_per_px_x)))
+                           : fma(p->y_per_z, delta_z, offset * fma(z, (vfloat)(f->slope_y), (vfloat)(f->mm_per_px_y)));
+  const vfloat across = (axis == 0 ? p->y_per_z : p->x_per_z) * delta_z;
+  return fma(along, along, fma(across, across, delta_z * delta_z));
+}

@@ -1,0 +1,123 @@
+// texels, halve_texels, light_cells, dark_cells: what samples of a disc read, as pixels and as blocks of them, and
+// where there is no light for them to find.
+#pragma OPENCL FP_CONTRACT OFF
+#include "frame/load.h"
+#include "frame/tangent.h"
+
+// A work-item has a run of `columns` pixels of a row.
+kernel void texels(struct FrameParams f, struct WindowParams window, global uchar* memory, long plane,
+                   global const uchar* matte, struct ImageParams matte_at, global struct TexelParams* texels,
+                   int columns) {
+  const Window w = window_in(window, plane, 1, memory);
+  const int y = get_global_id(1);
+  const int x_begin = get_global_id(0) * columns;
+  for (int x = x_begin; x < min(x_begin + columns, f.width); ++x) {
+    const size_t at = pixel_at(&w, x, y);
+    const Points p = points_at(&f, w.depth[at], x, y);
+    const float slope_x = depth_slope(&f, &w, x, y, 1, 0);
+    const float slope_y = depth_slope(&f, &w, x, y, 0, 1);
+    float area = patch_area(tangent_x(&f, &p, slope_x), tangent_y(&f, &p, slope_y));
+#if HAS_MATTE
+    area *= share_of_surface(row_of(matte, &matte_at, f.width, y, 0), x);
+#endif
+    const vrgb light = load_rgb(w.light, w.plane, at);
+    const struct TexelParams texel = {{light.r, light.g, light.b},   area, p.z, slope_x, slope_y,
+                                      w.material[at] & MATERIAL_MASK};
+    texels[(size_t)y * f.width + x] = texel;
+  }
+}
+
+// How far, as a share of its side, a quarter of a block may lie off the plane of all.
+#define MOST_BEND 0.25f
+
+// The block of four texels of the level before, which spans so many pixels. It has a material if all of them have, and
+// if they lie nearly in a plane.
+static inline struct TexelParams block_of(const struct TexelParams* four, int side_px) {
+  struct TexelParams block = {{0.0f, 0.0f, 0.0f}, 0.0f, 0.0f, 0.0f, 0.0f, four[0].material};
+  for (int i = 0; i < 4; ++i) {
+    if (four[i].material != block.material) block.material = 0;
+    block.area += four[i].area;
+    block.depth += 0.25f * four[i].depth;
+    block.slope_x += 0.25f * four[i].slope_x;
+    block.slope_y += 0.25f * four[i].slope_y;
+  }
+  if (block.material == 0 || !(block.area > 0.0f)) {
+    block.material = 0;
+    return block;
+  }
+  for (int i = 0; i < 4; ++i) {
+    for (int c = 0; c < 3; ++c) block.light[c] += four[i].area / block.area * four[i].light[c];
+  }
+  block.area *= 0.25f;
+  const float quarter_px = 0.25f * side_px;
+  const float most = MOST_BEND * side_px * sqrt(block.area);
+  for (int i = 0; i < 4; ++i) {
+    const float across = (i & 1) != 0 ? quarter_px : -quarter_px;
+    const float down = (i & 2) != 0 ? quarter_px : -quarter_px;
+    const float plane = fma(across, block.slope_x, fma(down, block.slope_y, block.depth));
+    if (!(fabs(four[i].depth - plane) <= most)) block.material = 0;
+  }
+  return block;
+}
+
+// Level `level` from the one before.
+kernel void halve_texels(struct FrameParams f, struct TexelLevels levels, int level, global struct TexelParams* texels,
+                         int columns) {
+  const int width = f.width >> level;
+  const int width_before = f.width >> (level - 1);
+  const int y = get_global_id(1);
+  const int x_begin = get_global_id(0) * columns;
+  global const struct TexelParams* above = texels + levels.first[level - 1] + (size_t)(2 * y) * width_before;
+  global struct TexelParams* row = texels + levels.first[level] + (size_t)y * width;
+  for (int x = x_begin; x < min(x_begin + columns, width); ++x) {
+    const struct TexelParams four[4] = {above[2 * x], above[2 * x + 1], above[width_before + 2 * x],
+                                        above[width_before + 2 * x + 1]};
+    row[x] = block_of(four, 1 << level);
+  }
+}
+
+// Whether a pixel of a cell gives light. A work-item has a cell.
+kernel void light_cells(struct FrameParams f, global const struct TexelParams* texels, global uchar* lit) {
+  const int cell_x = get_global_id(0);
+  const int cell_y = get_global_id(1);
+  int any = 0;
+  for (int y = cell_y * CELL; y < min(cell_y * CELL + CELL, f.height); ++y) {
+    for (int x = cell_x * CELL; x < min(cell_x * CELL + CELL, f.width); ++x) {
+      global const struct TexelParams* texel = texels + (size_t)y * f.width + x;
+      any |= texel->material != 0 && (texel->light[0] != 0.0f || texel->light[1] != 0.0f || texel->light[2] != 0.0f);
+    }
+  }
+  lit[cell_y * f.cells_x + cell_x] = any;
+}
+
+// Pixels along an axis that a disc of a cell may reach: rays that are `apart` pixels from each other are as far apart
+// on any surface as that times the size of a pixel, over the length of the ray per depth.
+static inline int reach_px(float reach_mm, float footprint, float ray_length, int most) {
+  return (int)fmin(fma(reach_mm * footprint, ray_length, 2.0f), (float)most);
+}
+
+// Whether no pixel within reach of a cell gives light: behind what light_cells wrote of all cells.
+kernel void dark_cells(struct FrameParams f, global const struct DiscParams* discs,
+                       global const struct CellParams* cells, global uchar* lit) {
+  const int cell_x = get_global_id(0);
+  const int cell_y = get_global_id(1);
+  global const struct CellParams* cell = cells + cell_y * f.cells_x + cell_x;
+  float reach_mm = 0.0f;
+  for (int m = 0; m < MATERIALS; ++m) {
+    if (cell->scattering[m / 32] >> (m % 32) & 1) reach_mm = fmax(reach_mm, discs[m].reach_mm);
+  }
+  const float from_center_x = fmax(fabs(cell_x * CELL - f.center_x), fabs(cell_x * CELL + CELL - f.center_x));
+  const float from_center_y = fmax(fabs(cell_y * CELL - f.center_y), fabs(cell_y * CELL + CELL - f.center_y));
+  const float ray_x = f.slope_x * from_center_x;
+  const float ray_y = f.slope_y * from_center_y;
+  const float ray_length = sqrt(fma(ray_x, ray_x, fma(ray_y, ray_y, 1.0f)));
+  const int x_px = reach_px(reach_mm, cell->finest_x, ray_length, f.width);
+  const int y_px = reach_px(reach_mm, cell->finest_y, ray_length, f.height);
+  const int x_end = min(cell_x * CELL + CELL - 1 + x_px, f.width - 1) / CELL;
+  const int y_end = min(cell_y * CELL + CELL - 1 + y_px, f.height - 1) / CELL;
+  int any = 0;
+  for (int y = max(cell_y * CELL - y_px, 0) / CELL; y <= y_end; ++y) {
+    for (int x = max(cell_x * CELL - x_px, 0) / CELL; x <= x_end; ++x) any |= lit[y * f.cells_x + x];
+  }
+  lit[f.cells_x * f.cells_y + cell_y * f.cells_x + cell_x] = !any;
+}

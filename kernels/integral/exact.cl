@@ -1,0 +1,142 @@
+// slopes, exact: the surface integral over all visible pixels of a material,
+//     M(p) = sum R(|P_p - P_q|) E(q) A(q) / sum R(|P_p - P_q|) A(q).
+#pragma OPENCL FP_CONTRACT OFF
+#include "base/linear_table.h"
+#include "frame/load.h"
+#include "integral/own_share.h"
+#include "frame/tangent.h"
+
+// Gauss-Legendre points and weights on [-1/2, 1/2].
+constant float points_2[2] = {-0.288675135f, 0.288675135f};
+constant float points_4[4] = {-0.430568156f, -0.169990522f, 0.169990522f, 0.430568156f};
+constant float weights_4[4] = {0.173927423f, 0.326072577f, 0.326072577f, 0.173927423f};
+
+// Pixels this near on both axes are integrated over 4 x 4 or 2 x 2 points.
+#define NEAR_4 2
+#define NEAR_2 6
+
+// A work-item has a run of `columns` pixels of a row. geometry receives three planes: depth slopes in x and y, mm per
+// px, and the area of the pixel's patch, mm^2, times what it counts for.
+kernel void slopes(struct FrameParams f, struct WindowParams window, global uchar* memory, long plane,
+                   global const uchar* matte, struct ImageParams matte_at, global float* geometry, int columns) {
+  const Window w = window_in(window, plane, 1, memory);
+  const int y = get_global_id(1);
+  const int x_begin = get_global_id(0) * columns;
+  for (int x = x_begin; x < min(x_begin + columns, f.width); x += V) {
+    const size_t at = pixel_at(&w, x, y);
+    const Points p = points_at(&f, load_floats(w.depth + at), x, y);
+    const vfloat slope_x = depth_slope(&f, &w, x, y, 1, 0);
+    const vfloat slope_y = depth_slope(&f, &w, x, y, 0, 1);
+    store_floats(geometry + at, slope_x);
+    store_floats(geometry + plane + at, slope_y);
+    vfloat area = patch_area(tangent_x(&f, &p, slope_x), tangent_y(&f, &p, slope_y));
+#if HAS_MATTE
+    area *= share_of_surface(row_of(matte, &matte_at, f.width, y, 0), x);
+#endif
+    store_floats(geometry + 2 * plane + at, area);
+  }
+}
+
+typedef struct {
+  vrgb light;
+  vrgb weight;
+} Sum;
+
+// R averaged over the patch of the pixels (dx, dy) away, by n x n quadrature points.
+static inline vrgb patch_average(const struct FrameParams* f, const Points* p, global const float4* tables,
+                                 struct TableParams radial, vrgb reciprocal, int dx, int dy, vfloat z, vfloat slope_x,
+                                 vfloat slope_y, int n) {
+  if (n == 1) {
+    return look_up_linear_scaled(tables, radial, squared_distance(f, p, z, (vfloat)((float)dx), (vfloat)((float)dy)),
+                                 reciprocal);
+  }
+  vrgb sum = {(vfloat)(0.0f), (vfloat)(0.0f), (vfloat)(0.0f)};
+  for (int j = 0; j < n; ++j) {
+    for (int i = 0; i < n; ++i) {
+      const float u = n == 2 ? points_2[i] : points_4[i];
+      const float v = n == 2 ? points_2[j] : points_4[j];
+      const float weight = n == 2 ? 0.25f : weights_4[i] * weights_4[j];
+      const vfloat r_squared =
+          squared_distance(f, p, z + u * slope_x + v * slope_y, (vfloat)((float)dx + u), (vfloat)((float)dy + v));
+      add(&sum, times(look_up_linear_scaled(tables, radial, r_squared, reciprocal), weight));
+    }
+  }
+  return sum;
+}
+
+// The half-extents, px, of all pixels whose points can lie within r_mm of those of the lanes in the mask.
+static inline int2 reach(const struct FrameParams* f, const Points* p, vint mask, vfloat r_mm) {
+  const vfloat nearest = p->z - r_mm;
+  const vfloat extent_x =
+      f->slope_x > 0.0f ? r_mm * (1.0f + fabs(p->x_per_z)) / (f->slope_x * nearest) : r_mm / f->mm_per_px_x;
+  const vfloat extent_y =
+      f->slope_y > 0.0f ? r_mm * (1.0f + fabs(p->y_per_z)) / (f->slope_y * nearest) : r_mm / f->mm_per_px_y;
+  int2 result = (int2)(0, 0);
+#define READ_LANE(lane)                                                                                   \
+  if (LANE(mask, lane)) {                                                                                 \
+    const int all = f->slope_x > 0.0f && LANE(nearest, lane) <= 0.0f;                                     \
+    result.x = max(result.x, all ? f->width : (int)fmin(LANE(extent_x, lane) + 2.0f, (float)f->width));   \
+    result.y = max(result.y, all ? f->height : (int)fmin(LANE(extent_y, lane) + 2.0f, (float)f->height)); \
+  }
+  EACH_LANE(READ_LANE)
+#undef READ_LANE
+  return result;
+}
+
+// The integral for the lanes of one material.
+static inline vrgb integrate(const Window* w, const struct FrameParams* f, const Points* p, vint mine, int m,
+                             global const struct MaterialParams* its, global const float4* tables,
+                             global const float* geometry, vrgb reciprocal, int x, int y) {
+  const size_t at_p = pixel_at(w, x, y);
+  const vrgb own_light = load_rgb(w->light, w->plane, at_p);
+  const vrgb own = own_share(f, p, tables, its->cumulated, reciprocal, load_floats(geometry + at_p),
+                             load_floats(geometry + w->plane + at_p), load_floats(geometry + 2 * w->plane + at_p));
+  Sum sum = {product(own, own_light), own};
+  const vfloat widest = 1.0f / fmin(fmin(reciprocal.r, reciprocal.g), reciprocal.b);
+  const int2 extent = reach(f, p, mine, its->reach_mm * widest);
+  for (int dy = max(-extent.y, -y); dy <= min(extent.y, f->height - 1 - y); ++dy) {
+    // A sum per row first: tens of thousands of terms in one float would lose digits.
+    const vrgb zero = same_rgb((vfloat)(0.0f));
+    Sum row = {zero, zero};
+    for (int dx = max(-extent.x, 1 - V - x); dx <= min(extent.x, f->width - 1 - x); ++dx) {
+      if (dx == 0 && dy == 0) continue;
+      const size_t at = pixel_at(w, x + dx, y + dy);
+      const vint same = AS_MASK((load_bytes(w->material + at) & MATERIAL_MASK) == (vint)(m));
+      if (!any_bit(same)) continue;
+      const int distance = max(abs(dx), abs(dy));
+      const int n = distance <= NEAR_4 ? 4 : distance <= NEAR_2 ? 2 : 1;
+      const vrgb average = patch_average(f, p, tables, its->radial, reciprocal, dx, dy, load_floats(w->depth + at),
+                                         load_floats(geometry + at), load_floats(geometry + w->plane + at), n);
+      const vrgb density = product(average, product(reciprocal, reciprocal));
+      const vrgb weight = keep_rgb(same, times(density, load_floats(geometry + 2 * w->plane + at)));
+      row.weight = sum_rgb(row.weight, weight);
+      row.light = fused(weight, keep_rgb(same, load_rgb(w->light, w->plane, at)), row.light);
+    }
+    sum.weight = sum_rgb(sum.weight, row.weight);
+    sum.light = sum_rgb(sum.light, row.light);
+  }
+  const vrgb result = {sum.light.r / sum.weight.r, sum.light.g / sum.weight.g, sum.light.b / sum.weight.b};
+  return result;
+}
+
+kernel void exact(struct FrameParams f, struct WindowParams window, int first_row,
+                  global const struct MaterialParams* materials, global const float4* tables, global uchar* memory,
+                  long plane, global const float* geometry, int columns, global float* held) {
+  const Window w = window_in(window, plane, 1, memory);
+  const int y = first_row + get_global_id(1);
+  const int x_begin = get_global_id(0) * columns;
+  for (int x = x_begin; x < min(x_begin + columns, f.width); x += V) {
+    const size_t at = pixel_at(&w, x, y);
+    const vint m = load_bytes(w.material + at);
+    const Points p = points_at(&f, load_floats(w.depth + at), x, y);
+    const vrgb reciprocal = width_reciprocal(&w, at);
+    vrgb result = load_rgb(w.light, w.plane, at);
+    for (int i = 0; i < MATERIALS; ++i) {
+      const vint mine = AS_MASK(m == (vint)(i + 1));
+      if (!any_bit(mine)) continue;
+      result = select_rgb(result, integrate(&w, &f, &p, mine, i + 1, materials + i, tables, geometry, reciprocal, x, y),
+                          mine);
+    }
+    store_rgb(held, (size_t)f.stride * f.height, surface_at(&f, x, y), result);
+  }
+}

@@ -1,0 +1,34 @@
+// The light of a pixel that stays on its own patch of surface.
+#include "base/linear_table.h"
+#include "frame/tangent.h"
+
+// Gauss-Legendre points and weights on [-1/2, 1/2].
+constant float points_8[8] = {-0.480144928f, -0.398333239f, -0.262766205f, -0.0917173212f,
+                              0.0917173212f, 0.262766205f,  0.398333239f,  0.480144928f};
+constant float weights_8[8] = {0.0506142681f, 0.111190517f, 0.156853323f, 0.181341892f,
+                               0.181341892f,  0.156853323f, 0.111190517f, 0.0506142681f};
+
+static inline void add(vrgb* sum, vrgb value) {
+  sum->r += value.r;
+  sum->g += value.g;
+  sum->b += value.b;
+}
+
+// The integral of the cumulated profile at the patch's edge over the angle.
+static inline vrgb own_share(const struct FrameParams* f, const Points* p, global const float4* tables,
+                             struct TableParams cumulated, vrgb reciprocal, vfloat slope_x, vfloat slope_y,
+                             vfloat area) {
+  const Tangent a = tangent_x(f, p, slope_x);
+  const Tangent b = tangent_y(f, p, slope_y);
+  vrgb share = {(vfloat)(0.0f), (vfloat)(0.0f), (vfloat)(0.0f)};
+  for (int i = 0; i < 16; ++i) {
+    // Two of the four edges; the other two are their mirror images.
+    const float s = i < 8 ? 0.5f : points_8[i - 8];
+    const float t = i < 8 ? points_8[i] : 0.5f;
+    const Tangent edge = {s * a.x + t * b.x, s * a.y + t * b.y, s * a.z + t * b.z};
+    const vfloat r_squared = squared_length(edge);
+    const vfloat angle = weights_8[i & 7] * 0.5f * area / r_squared;
+    add(&share, times(look_up_linear_scaled(tables, cumulated, r_squared, reciprocal), angle * M_1_PI_F));
+  }
+  return share;
+}

@@ -1,0 +1,10 @@
+// gather_map: the depths of one shadow map, from any format, into the buffer of all maps.
+#include "lighting/space.h"
+
+// A work-item has one texel.
+kernel void gather_map(global const uchar* map, struct ImageParams map_at, int width, global float* maps,
+                       int first_texel) {
+  const int x = get_global_id(0);
+  const int y = get_global_id(1);
+  maps[first_texel + y * width + x] = read_value(map, &map_at, width, x, y);
+}

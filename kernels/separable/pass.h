@@ -1,0 +1,126 @@
+// One separable pass: what it reads, and its sums.
+#include "frame/load.h"
+#include "frame/tangent.h"
+
+#ifndef TERMS
+#error "TERMS: of every material; those that it does not have weigh nothing"
+#endif
+
+// What the host prepared.
+typedef struct {
+  global const struct MaterialParams* materials;
+  global const struct TermParams* terms;
+  global const struct RungParams* rungs;
+  global const int* offsets;
+  global const struct WeightParams* weights;
+  global const struct FlatWeight* flat_weights;
+  global const struct SmoothWeight* smooth_weights;
+  global const struct RotationParams* rotations;
+  global const struct CellPasses* passes;
+  uint seed;
+} Tables;
+
+// Where the taps of a vertical pass lie, made once for many pixels: those of pair i of the pixel (x, y), whose offset
+// is o, at x + row_at[y - o] + side_at[2 i] and x + row_at[y + o] + side_at[2 i + 1].
+typedef struct {
+  global const int* row_at;
+  global const int* side_at;
+} TapPlaces;
+
+// One pass: the horizontal one reads one image of light for all terms, the vertical one an image for each.
+typedef struct {
+  const Window* from;
+  int axis;
+  int y_step;
+  int shear;          // of the vertical pass, columns per row times 4096
+  size_t next_light;  // from the image of one term to that of the next
+  TapPlaces places;   // of the vertical pass over cells where every tap falls on the material
+} Pass;
+
+typedef struct {
+  vrgb light[TERMS];
+  vrgb weight[TERMS];
+} Sums;
+
+FORCED_INLINE Pass pass_from(const Window* w, int axis, int shear) {
+  const Pass pass = {w, axis, axis == 1, shear, axis == 0 ? 0 : 3 * w->plane, {0, 0}};
+  return pass;
+}
+
+FORCED_INLINE int tap_x(const Pass* s, int x, int offset) {
+  return s->axis == 0 ? x + offset : x + side_of(s->shear, offset);
+}
+
+// The pixel an offset away.
+FORCED_INLINE size_t tap_at(const Pass* s, int x, int y, int offset) {
+  return pixel_at(s->from, tap_x(s, x, offset), y + s->y_step * offset);
+}
+
+// Both taps of a pair.
+typedef struct {
+  size_t before, after;
+} TapPair;
+
+FORCED_INLINE TapPair pair_at(const Pass* s, int x, int y, global const int* offsets, int i) {
+  const int offset = offsets[i];
+  TapPair pair;
+  if (s->axis == 0) {
+    pair.before = tap_at(s, x, y, -offset);
+    pair.after = tap_at(s, x, y, offset);
+  } else {
+    pair.before = x + s->places.row_at[y - offset];
+    pair.after = x + s->places.row_at[y + offset];
+#if SHEARED
+    pair.before += s->places.side_at[2 * i];
+    pair.after += s->places.side_at[2 * i + 1];
+#endif
+  }
+  return pair;
+}
+
+FORCED_INLINE vrgb load_term(const Pass* s, int t, size_t at) {
+  return load_rgb(s->from->light + t * s->next_light, s->from->plane, at);
+}
+
+// The result of a term from its sums.
+FORCED_INLINE vrgb finish_term(global const struct TermParams* term, vrgb light, vrgb weight, vrgb own) {
+  if (term->normalised) {
+    const vrgb mean = {light.r / weight.r, light.g / weight.g, light.b / weight.b};
+    return mean;
+  }
+  const vrgb missing = {term->sum[0] - weight.r, term->sum[1] - weight.g, term->sum[2] - weight.b};
+  return fused(missing, own, light);
+}
+
+// Whether the V pixels an offset away lie in the frame, some of them.
+FORCED_INLINE int in_frame(const struct FrameParams* f, const Pass* s, int x, int y, int offset) {
+  const int at_x = tap_x(s, x, offset);
+  const int at_y = y + s->y_step * offset;
+  return at_x > -V && at_x < f->width && at_y >= 0 && at_y < f->height;
+}
+
+// Those of the V pixels an offset away that are of a material and in the frame: beyond it the rows of the vertical pass
+// hold anything.
+FORCED_INLINE vint lanes_of(const struct FrameParams* f, const Pass* s, vint material, size_t tap, int x, int offset) {
+  const vint same = AS_MASK((load_bytes(s->from->material + tap) & MATERIAL_MASK) == material);
+  if (s->axis == 0 || s->shear == 0) return same;
+  const vint at_x = tap_x(s, x, offset) + int_lane_numbers();
+  return same & AS_MASK(at_x >= 0) & AS_MASK(at_x < f->width);
+}
+
+FORCED_INLINE vrgb add_scaled(global const float* factor, vrgb a, vrgb b) {
+  const vrgb result = {fma((vfloat)(factor[0]), a.r, b.r), fma((vfloat)(factor[1]), a.g, b.g),
+                       fma((vfloat)(factor[2]), a.b, b.b)};
+  return result;
+}
+
+// A pair of taps in one channel.
+typedef struct {
+  vfloat before, after;
+} ChannelPair;
+
+FORCED_INLINE ChannelPair load_channel_pair(const Pass* s, int t, int channel, TapPair at) {
+  global const float* plane = s->from->light + t * s->next_light + channel * s->from->plane;
+  const ChannelPair pair = {load_floats(plane + at.before), load_floats(plane + at.after)};
+  return pair;
+}

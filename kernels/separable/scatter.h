@@ -1,0 +1,65 @@
+// One separable pass over V pixels of a row. See Taps in taps.hpp for what it computes.
+#include "separable/curved.h"
+#include "separable/flat.h"
+#include "classify/rung.h"
+#include "separable/smooth.h"
+
+static inline struct CellPass cell_pass(const struct FrameParams* f, const Tables* tables, int cell_x, int cell_y,
+                                        int axis) {
+  global const struct CellPasses* passes = tables->passes + (size_t)cell_y * f->cells_x + cell_x;
+  return axis == 0 ? passes->x : passes->y;
+}
+
+static inline int first_flat_weight(global const struct RungParams* rung, int part) {
+  return rung->first_flat_weight + part * (rung->pairs + 1) * TERMS;
+}
+
+// The sum of all terms.
+FORCED_INLINE vrgb total_of(global const struct TermParams* terms, const vrgb* values) {
+  vrgb total = scaled(terms[0].scale, values[0]);
+#pragma unroll
+  for (int t = 1; t < TERMS; ++t) total = sum_rgb(total, scaled(terms[t].scale, values[t]));
+  return total;
+}
+
+// The lanes of all materials, whatever taps fall on: of each term in the horizontal pass, their sum as the first one in
+// the vertical pass. It is rarely needed, so that there is one for both passes.
+SHARED void scatter_pixels(vrgb* result, const struct FrameParams* f, const Pass* s, const Tables* tables, int x,
+                           int y) {
+  const size_t at = pixel_at(s->from, x, y);
+  const vint m = load_bytes(s->from->material + at);
+  const struct CellPass pass = cell_pass(f, tables, x / CELL, y / CELL, s->axis);
+  Pass its_pass = *s;
+  its_pass.shear = pass.shear;
+  for (int t = 0; t < TERMS; ++t) result[t] = same_rgb((vfloat)(0.0f));
+  for (int i = 0; i < MATERIALS; ++i) {
+    const vint material = (vint)(i + 1);
+    const vint lanes = AS_MASK((m & MATERIAL_MASK) == material);
+    if (!any_bit(lanes)) continue;
+    global const struct MaterialParams* its = tables->materials + i;
+    global const struct TermParams* terms = tables->terms + its->first_term;
+    const vint mine = AS_MASK(m == material);
+    const Step step = step_of(its, pass.footprint, pass.shape);
+    vrgb scattered[TERMS];
+    const int has_taps = step.rung >= 0 && any_bit(mine);
+    if (has_taps) {
+      global const struct RungParams* rung = tables->rungs + its->first_rung + step.rung;
+      if (pass.shape == SHAPE_CURVED) {
+        scatter_curved(scattered, f, &its_pass, tables, rung, terms, material, x, y, 0);
+      } else if (pass.shape == SHAPE_SMOOTH) {
+        scatter_smooth(scattered, f, &its_pass, tables, rung, terms, material, x, y);
+      } else {
+        scatter_flat(scattered, f, &its_pass, tables, rung, tables->flat_weights + first_flat_weight(rung, step.part),
+                     terms, material, x, y);
+      }
+    }
+#pragma unroll
+    for (int t = 0; t < TERMS; ++t) {
+      // Without taps a term is its sum at one point.
+      const vrgb alone = scaled(terms[t].sum, load_term(s, t, at));
+      scattered[t] = has_taps ? select_rgb(alone, scattered[t], mine) : alone;
+      if (s->axis == 0) result[t] = select_rgb(result[t], scattered[t], lanes);
+    }
+    if (s->axis == 1) result[0] = select_rgb(result[0], total_of(terms, scattered), lanes);
+  }
+}

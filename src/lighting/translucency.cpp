@@ -1,0 +1,135 @@
+#include "dermis/translucency.hpp"
+
+#include <algorithm>
+#include <array>
+#include <string>
+
+#include "screen/check_materials.hpp"
+#include "opencl/device_cache.hpp"
+#include "lighting/light_tables.hpp"
+#include "opencl/pixel_stage.hpp"
+#include "opencl/program.hpp"
+#include "lighting/slab_tables.hpp"
+
+namespace dermis {
+
+namespace {
+
+enum Name { light, albedo, position, normal, material, mask, thickness, beauty, lit, result };
+constexpr int image_count = result + 1;
+using Images = std::array<CallerImage, image_count>;
+
+void check_range(const char* argument, double value, double low, double high, const char* wanted) {
+  if (!(value >= low && value <= high)) throw Error(ErrorCode::usage, argument, std::to_string(value), wanted);
+}
+
+void check_options(const TranslucencyOptions& options) {
+  check_range("shrink_units", options.shrink_units, 0, 1e18, "0..1e18 scene units");
+  check_range("thickness_scale", options.thickness_scale, 1e-18, 1e18, "1e-18..1e18");
+  check_range("softness_texels", options.softness_texels, 0, 16, "0..16 texels");
+}
+
+void check_lighting(const TranslucencyDescription& frames, const TranslucencyOptions& options) {
+  if (options.lighting == Lighting::lit && !frames.albedo) {
+    throw Error(ErrorCode::role_missing, "albedo", "no image", "an albedo image, as the light has the albedo in it");
+  }
+}
+
+Images check_images(const TranslucencyFrame& frame, const TranslucencyDescription& description) {
+  check_size(frame.width, frame.height, "frame size");
+  check_range("mm_per_unit", frame.mm_per_unit, 1e-18, 1e18, "1e-18..1e18");
+  const int w = frame.width;
+  const Images images = {described("light", 3, frame.light, w),
+                         described("albedo", 3, frame.albedo, w),
+                         described("position", 3, frame.position, w),
+                         described("normal", 3, frame.normal, w),
+                         described("material", 1, frame.material, w),
+                         described("mask", 1, frame.mask, w),
+                         described("thickness", 1, frame.thickness, w),
+                         described("beauty", 3, frame.beauty, w),
+                         described("lit", 3, frame.lit, w),
+                         described("result", 3, frame.result, w)};
+  for (const CallerImage& image : images) check_image(image, frame.width, frame.height);
+  if (!(frame.description() == description)) {
+    throw Error(ErrorCode::usage, "frame", "albedo, material, mask or thickness other than described",
+                "the images that the Translucency was made for");
+  }
+  for (const int needed : {light, position, normal}) {
+    if (!images[needed].present()) throw Error(ErrorCode::role_missing, images[needed].name, "no image", "an image");
+  }
+  if (!frame.lit && !frame.result) throw Error(ErrorCode::usage, "outputs", "none", "a lit or a result image");
+  if (frame.result && (!frame.beauty || !frame.albedo)) {
+    throw Error(ErrorCode::role_missing, frame.beauty ? "albedo" : "beauty", "no image",
+                "beauty and albedo, to put transmitted light into the result");
+  }
+  const bool has_map = std::any_of(frame.lights.begin(), frame.lights.end(),
+                                   [](const Light& its) { return static_cast<bool>(its.map.depth); });
+  if (!frame.lights.empty() && !has_map && !frame.thickness) {
+    throw Error(ErrorCode::role_missing, "thickness", "no image, and no light with a shadow map", "one of them");
+  }
+  return images;
+}
+
+}  // namespace
+
+struct Translucency::State {
+  Device device;
+  TranslucencyDescription description;
+  TranslucencyOptions options;
+  cl::Program program;
+  cl::Buffer slabs;
+  cl::Buffer tables;
+};
+
+Translucency::Translucency(const Device& device, const std::vector<Material>& materials,
+                           const TranslucencyDescription& frames, const TranslucencyOptions& options) {
+  check_options(options);
+  check_materials(materials, frames.material, frames.albedo);
+  check_lighting(frames, options);
+  const std::string constants =
+      scalar_build_options() + build_constant("MATERIALS", static_cast<int>(materials.size())) +
+      build_constant("HAS_ALBEDO", frames.albedo ? 1 : 0) + build_constant("HAS_MATERIAL", frames.material ? 1 : 0) +
+      build_constant("HAS_MASK", frames.mask ? 1 : 0) + build_constant("HAS_THICKNESS", frames.thickness ? 1 : 0) +
+      build_constant("PIXEL_WIDTH", frames.mask || any_follows_albedo(materials) ? 1 : 0) +
+      build_constant("LIT", options.lighting == Lighting::lit ? 1 : 0) +
+      build_constant("TABLE_SHIFT", 23 - log2_nodes_per_octave_of_slabs);
+  const SlabTables tables = make_slab_tables(materials);
+  state_ = with_device_errors([&] {
+    const cl::Context context(device.context(), true);
+    return std::make_unique<State>(State{device, frames, options,
+                                         build_program(device, {"lighting/shadow_maps.cl", "lighting/transmit.cl"}, constants),
+                                         upload_rows(context, tables.materials), upload_rows(context, tables.nodes)});
+  });
+}
+
+Translucency::~Translucency() = default;
+Translucency::Translucency(Translucency&&) noexcept = default;
+Translucency& Translucency::operator=(Translucency&&) noexcept = default;
+
+void Translucency::run(const TranslucencyFrame& frame) const {
+  const Images images = check_images(frame, state_->description);
+  make_light_params(frame.lights);  // what is wrong with them, before anything is done
+  with_device_errors([&] {
+    const cl::Context context(state_->device.context(), true);
+    const cl::CommandQueue queue = cache_of(state_->device).queue(state_->device);
+    const ImageBuffers memory(context, frame.width, frame.height, images);
+    check_outputs(memory, images, {{lit, light}, {result, beauty}});
+    const BoundLights lights(context, queue, state_->program, frame.lights);
+    const auto buffer = [&](Name name) { return memory.buffer(memory.has(name) ? name : light); };
+    const TranslucencyOptions& options = state_->options;
+    run_per_pixel(queue, state_->program, "transmit", frame.width, frame.height, frame.width, buffer(light),
+                  memory.layout(light), buffer(albedo), memory.layout(albedo), buffer(position),
+                  memory.layout(position), buffer(normal), memory.layout(normal), buffer(material),
+                  memory.layout(material), buffer(mask), memory.layout(mask), buffer(thickness),
+                  memory.layout(thickness), buffer(beauty), memory.layout(beauty), buffer(lit), memory.layout(lit),
+                  buffer(result), memory.layout(result), memory.same_place(lit, light) ? 0 : 1,
+                  memory.same_place(result, beauty) ? 0 : 1, lights.lights(), lights.count(), lights.maps(),
+                  state_->slabs, state_->tables, static_cast<float>(frame.mm_per_unit),
+                  static_cast<float>(options.thickness_scale), static_cast<float>(options.shrink_units),
+                  static_cast<float>(options.softness_texels), frame.lit ? 1 : 0, frame.result ? 1 : 0);
+    queue.finish();
+    memory.read_back(queue);
+  });
+}
+
+}  // namespace dermis

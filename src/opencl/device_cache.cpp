@@ -1,0 +1,31 @@
+#include "opencl/device_cache.hpp"
+
+namespace dermis {
+
+namespace {
+
+template <class Row>
+std::size_t bytes(const std::vector<Row>& rows) {
+  return rows.size() * sizeof(Row);
+}
+
+}  // namespace
+
+cl::CommandQueue DeviceCache::queue(const Device& device) {
+  std::call_once(queue_made_, [&] {
+    queue_ = cl::CommandQueue(cl::Context(device.context(), true), cl::Device(device.id(), true));
+  });
+  return queue_;
+}
+
+std::size_t DeviceCache::bytes_of(const Taps& taps) {
+  std::size_t sum = sizeof(Taps) + bytes(taps.terms) + bytes(taps.rungs);
+  for (const Rung& rung : taps.rungs) {
+    sum += bytes(rung.core_gain) + bytes(rung.offsets_px) + bytes(rung.weights);
+    for (const auto& weights : rung.flat_weights) sum += bytes(weights);
+    sum += bytes(rung.stretch_weights) + bytes(rung.skew_weights);
+  }
+  return sum;
+}
+
+}  // namespace dermis

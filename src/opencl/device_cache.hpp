@@ -1,0 +1,47 @@
+// What plans for one device share: none of it changes once it is made.
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <string>
+
+#include "opencl/opencl.hpp"
+#include "opencl/recent.hpp"
+#include "dermis/device.hpp"
+#include "dermis/profile.hpp"
+#include "dermis/taps.hpp"
+
+namespace dermis {
+
+/// What taps are fitted to.
+struct FitKey {
+  Profile profile;
+  TapsDesign design;
+  bool operator==(const FitKey&) const = default;
+};
+
+struct DeviceCache {
+  /// By files and build options. A program holds a few MB of code; a caller who changes options, or what its frames
+  /// hold, comes by a handful of them.
+  Recent<std::string, cl::Program> programs{16, [](const cl::Program&) { return 1; }};
+  /// A usual ladder takes 0.7 MB, so ninety fit.
+  Recent<FitKey, std::shared_ptr<const Taps>> taps{std::size_t{64} << 20,
+                                                   [](const auto& its) { return bytes_of(*its); }};
+  /// The designs with the ranks that were found for them.
+  Recent<FitKey, TapsDesign> designs{1024, [](const TapsDesign&) { return 1; }};
+
+  /// A queue of the device, made when first asked for. It stays: PoCL 3.1 lets go of a command's event after it has
+  /// said that it is done, and then looks at the queue.
+  cl::CommandQueue queue(const Device& device);
+
+  static std::size_t bytes_of(const Taps& taps);
+
+ private:
+  std::once_flag queue_made_;
+  cl::CommandQueue queue_;
+};
+
+/// That of a device and its copies.
+DeviceCache& cache_of(const Device& device);
+
+}  // namespace dermis

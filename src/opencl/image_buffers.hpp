@@ -1,0 +1,75 @@
+// Images of a caller, whatever they are for, and the device memory they lie in.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <type_traits>
+#include <vector>
+
+#include "opencl/opencl.hpp"
+#include "opencl/params.hpp"
+#include "dermis/frame.hpp"
+
+namespace dermis {
+
+struct CallerImage {
+  const char* name;
+  int channels;
+  bool is_output;
+  const void* host;
+  cl_mem buffer;
+  Layout layout;  ///< with all strides filled in
+
+  bool present() const { return host != nullptr || buffer != nullptr; }
+};
+
+/// The layout with strides in place of zeros.
+Layout with_strides(Layout layout, int channels, int width);
+
+/// An Image or OutputImage.
+template <class AnyImage>
+CallerImage described(const char* name, int channels, const AnyImage& image, int width) {
+  return {name,       channels,     std::is_same_v<AnyImage, OutputImage>,
+          image.host, image.buffer, with_strides(image.layout, channels, width)};
+}
+
+/// Throws Error(usage) if images cannot have that size.
+void check_size(int width, int height, const char* argument);
+
+/// Throws Error(usage) if the format or layout is none that kernels read, or a buffer is too small.
+void check_image(const CallerImage& image, int width, int height);
+
+/// Buffers for images: those of the caller, or buffers over the caller's host memory. Host images that overlap, such as
+/// channels of one interleaved picture or an output in place of an input, share a buffer.
+class ImageBuffers {
+ public:
+  ImageBuffers(const cl::Context& context, int width, int height, std::span<const CallerImage> images);
+
+  bool has(std::size_t image) const { return buffers_[image]() != nullptr; }
+  const cl::Buffer& buffer(std::size_t image) const { return buffers_[image]; }
+  const params::ImageParams& layout(std::size_t image) const { return layouts_[image]; }
+
+  /// True if two images may share bytes.
+  bool overlap(std::size_t a, std::size_t b) const;
+  /// True if both are the same one: same place, same layout.
+  bool same_place(std::size_t a, std::size_t b) const;
+
+  /// Makes what the device wrote visible in host memory. Blocks.
+  void read_back(const cl::CommandQueue& queue) const;
+
+ private:
+  struct HostRange {
+    const std::byte* begin;
+    const std::byte* end;
+    bool written;
+  };
+
+  int width_, height_;
+  std::vector<int> channels_;
+  std::vector<HostRange> host_ranges_;
+  std::vector<cl::Buffer> host_buffers_;  ///< one per range
+  std::vector<cl::Buffer> buffers_;
+  std::vector<params::ImageParams> layouts_;
+};
+
+}  // namespace dermis

@@ -1,0 +1,23 @@
+// From embedded kernel files to a built OpenCL program.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "opencl/opencl.hpp"
+#include "dermis/device.hpp"
+
+namespace dermis {
+
+/// Puts kernel files together, each #include of one replaced by its text the first time and dropped after that.
+std::string assemble_source(const std::vector<std::string>& files);
+
+/// A build option that defines a name.
+inline std::string build_constant(const char* name, int value) {
+  return std::string(" -D") + name + "=" + std::to_string(value);
+}
+
+/// The files built with the options, once per device. Throws Error(device) with the first line of the build log.
+cl::Program build_program(const Device& device, const std::vector<std::string>& files, const std::string& options);
+
+}  // namespace dermis

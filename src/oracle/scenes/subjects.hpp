@@ -1,0 +1,96 @@
+/// Shapes under a light, as a camera sees them: what the scenes are made of.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <span>
+
+#include "dermis/oracle/scenes.hpp"
+#include "oracle/math/vec3.hpp"
+#include "oracle/screen/view.hpp"
+
+namespace dermis::oracle {
+
+using Rgb = std::array<double, 3>;
+
+/// The ray through the centre of a pixel: the point at depth z is origin + z * slope.
+struct Ray {
+  Vec3 origin;
+  Vec3 slope;
+
+  Vec3 at(double z) const { return sum(origin, scaled(slope, z)); }
+};
+
+/// A scene to look at. `distance_mm` is the depth of its middle.
+struct Setting {
+  int width;
+  int height;
+  double px_per_mm;
+  double distance_mm;
+  View view;
+
+  Ray ray(int x, int y) const {
+    const Vec3 near = view.unproject(x + 0.5, y + 0.5, 0);
+    const Vec3 far = view.unproject(x + 0.5, y + 0.5, 1);
+    return {near, difference(far, near)};
+  }
+};
+
+/// What a ray meets. Axes as in Scene: x right, y down, z forward.
+struct Hit {
+  double z_mm;
+  Vec3 normal;
+  int material;
+  Rgb albedo;
+};
+
+/// A sphere around what casts a shadow.
+struct Caster {
+  Vec3 center;
+  double radius_mm;
+};
+
+/// Shape and light of a kind of scene.
+class Subject {
+ public:
+  explicit Subject(const Setting& setting) : setting_(setting) {}
+  Subject(const Subject&) = delete;
+  Subject& operator=(const Subject&) = delete;
+  virtual ~Subject() = default;
+
+  virtual std::optional<Hit> hit(int x, int y) const = 0;
+  virtual Rgb light(int x, int y, const Vec3& point_mm, const Hit& hit) const = 0;
+
+  /// What casts the shadow that a map of the light shows, if there is a map, and how far along a ray it begins.
+  virtual std::optional<Caster> caster() const { return std::nullopt; }
+  virtual std::optional<double> first_along(const Ray&) const { return std::nullopt; }
+
+ protected:
+  Hit facing_plane(int material, const Rgb& albedo) const {
+    return {setting_.distance_mm, {0, 0, -1}, material, albedo};
+  }
+
+  const Setting setting_;
+};
+
+/// A kind of scene.
+struct Kind {
+  SceneInfo info;
+  std::unique_ptr<Subject> (*make)(const Setting& setting);
+  double focal_per_side = 2;  ///< focal length of its perspective camera over the longer side of the frame
+};
+
+std::unique_ptr<Subject> make_two_spheres(const Setting& setting);
+std::unique_ptr<Subject> make_head(const Setting& setting);
+
+/// All there are.
+std::span<const Kind> kinds();
+
+/// The colour of that light where it is not 1.
+inline constexpr Rgb sun_colour{1, 0.95, 0.85};
+
+/// Unit direction from any surface to the light.
+inline constexpr Vec3 towards_light{-2.0 / 7, -3.0 / 7, -6.0 / 7};
+
+}  // namespace dermis::oracle

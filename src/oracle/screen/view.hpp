@@ -1,0 +1,55 @@
+/// Where a pixel lies in space, and how many pixels a millimetre covers there.
+#pragma once
+
+#include <array>
+
+#include "dermis/frame.hpp"
+#include "oracle/math/rounding.hpp"
+#include "oracle/math/vec3.hpp"
+
+namespace dermis::oracle {
+
+enum Axis { horizontal = 0, vertical = 1 };
+
+/// A camera that measures in millimetres.
+class View {
+ public:
+  View(const Camera& camera, double mm_per_unit) : camera_(camera), mm_per_unit_(mm_per_unit) {}
+
+  bool is_perspective() const { return camera_.projection == Camera::Projection::perspective; }
+
+  /// Depth in mm of a depth in scene units.
+  Bounded depth_mm(double depth) const { return exact(depth) * as_float(mm_per_unit_); }
+
+  /// Pixels per mm along an axis.
+  Bounded footprint(Axis axis, Bounded z_mm) const;
+
+  /// Width or height of a pixel, mm: the inverse of footprint().
+  Bounded size_mm(Axis axis, Bounded z_mm) const;
+
+  /// How much of size_mm() comes with a part of the depth.
+  Bounded growth_mm(Axis axis, Bounded dz_mm) const;
+
+  /// Change of x or y with depth along the ray that is seen at x or y = `place_px`.
+  Bounded ray(Axis axis, double place_px) const;
+
+  /// The point at depth z_mm that is seen at (x_px, y_px).
+  Vec3 unproject(double x_px, double y_px, double z_mm) const;
+
+  /// The same for the centre of a pixel, with the rounding of a device.
+  std::array<Bounded, 3> position(int x, int y, Bounded z_mm) const;
+
+  /// Change of unproject() per pixel along an axis, where the depth changes by dz_mm.
+  Vec3 tangent(Axis axis, double x_px, double y_px, double z_mm, double dz_mm) const;
+
+ private:
+  double scale(Axis axis) const { return axis == horizontal ? camera_.scale_x : camera_.scale_y; }
+  double center(Axis axis) const { return axis == horizontal ? camera_.center_x : camera_.center_y; }
+  double mm_per_px(Axis axis, double z_mm) const { return (is_perspective() ? z_mm : mm_per_unit_) / scale(axis); }
+  Bounded coordinate(Axis axis, int pixel, Bounded z_mm) const;
+
+  Camera camera_;
+  double mm_per_unit_;
+};
+
+}  // namespace dermis::oracle

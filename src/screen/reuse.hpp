@@ -1,0 +1,24 @@
+// What one frame of a sequence leaves for the next one.
+#pragma once
+
+#include <cstdint>
+
+#include "screen/plan_state.hpp"
+#include "screen/run_memory.hpp"
+
+namespace dermis {
+
+struct Reuse::State {
+  std::uint64_t plan = 0;  ///< its number; 0: there is no frame before
+  RunSizes sizes{};
+  Camera camera;
+  double mm_per_unit = 0;
+  cl::Buffer held;          ///< light after scattering, as RunMemory::held
+  cl::Buffer fingerprints;  ///< of cells
+  cl::Buffer changed;       ///< of cells: whether they differ from those before
+
+  /// Whether a frame of that plan, size, camera and scale is followed by another. If not, there is new memory.
+  bool continues(const Plan::State& its_plan, const RunSizes& its_sizes, const Frame& frame);
+};
+
+}  // namespace dermis

@@ -1,0 +1,29 @@
+// Functions on the pixels of a line: integrated over each pixel, and what that does to a frequency.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "taps/model/separable_model.hpp"
+
+namespace dermis {
+
+/// What Gaussians on pixels need of angular frequencies u, rad per px, whatever their width.
+class LatticeWaves {
+ public:
+  explicit LatticeWaves(const Eigen::VectorXd& u);
+
+  /// The response of a Gaussian of unit integral that is integrated over each pixel: the sum over whole i of cos(u i)
+  /// times its light on pixel i.
+  Eigen::VectorXd of_gaussian(double sigma_px) const;
+
+  /// The responses of Gaussians of unit integral, one per column.
+  Eigen::MatrixXd of_gaussians(const std::vector<Gaussian>& gaussians, double pixel_mm) const;
+
+ private:
+  Eigen::MatrixXd cosines_;          ///< of u i, i = 0, 1, ...
+  Eigen::MatrixXd squared_images_;   ///< (u + 2 pi m)^2, m = -1, 0, 1
+  Eigen::MatrixXd pixel_responses_;  ///< there
+};
+
+}  // namespace dermis

@@ -1,0 +1,421 @@
+#include "taps/placement/tap_fit.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace dermis {
+
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// A tap between two pixels is so much of each.
+struct PixelShare {
+  int offset_px;
+  double share;
+};
+
+std::array<PixelShare, 2> pixels_of(double offset_px) {
+  const int below = static_cast<int>(offset_px);
+  const double fraction = offset_px - below;
+  return {{{below, 1 - fraction}, {below + 1, fraction}}};
+}
+
+/// The moments of a function of frequency, computed when first asked for: few are.
+class Moments {
+ public:
+  /// Of values at the coarse frequencies.
+  static Moments of_coarse(const PowerGrid& grid, VectorXd at_coarse) {
+    return {grid, std::move(at_coarse), VectorXd::Constant(grid.fine.size(), unknown), true};
+  }
+  /// Of values at the fine frequencies. `many`: all at once.
+  static Moments of_fine(const PowerGrid& grid, VectorXd at_fine, bool many) {
+    VectorXd moments = many ? grid.moments(at_fine) : VectorXd(VectorXd::Constant(grid.fine.size(), unknown));
+    return {grid, std::move(at_fine), std::move(moments), false};
+  }
+
+  double operator[](int k) const {
+    double& moment = moments_[k];
+    if (std::isnan(moment)) moment = is_coarse_ ? grid_->moments_of_coarse().col(k).dot(x_) : grid_->moment(x_, k);
+    return moment;
+  }
+
+ private:
+  static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+
+  Moments(const PowerGrid& grid, VectorXd x, VectorXd moments, bool is_coarse)
+      : grid_(&grid), x_(std::move(x)), moments_(std::move(moments)), is_coarse_(is_coarse) {}
+
+  const PowerGrid* grid_;
+  VectorXd x_;
+  mutable VectorXd moments_;
+  bool is_coarse_;
+};
+
+/// The weights x of pairs that make x^T matrix x / 2 - right^T x least: those of one term after those of another.
+/// `matrix` has its lower half.
+struct Equations {
+  MatrixXd matrix;
+  VectorXd right;
+};
+
+/// The squared error of one channel as a quadratic form in the weights of pairs. The centre takes what is left of the
+/// sum, so that a pair of weight w adds w (2 cos(u o) - 2) to the response.
+class QuadraticForm {
+ public:
+  /// `searches`: it is to be solved for many offsets.
+  QuadraticForm(const ChannelOnPixels& channel, const Responses& beta, const VectorXd& sums, bool joint, bool searches);
+
+  /// The least value over the weights of pairs at these offsets, and the weights, a column per term.
+  double solve(const std::vector<double>& offsets_px, const std::vector<bool>& non_negative, MatrixXd* weights) const {
+    return solve(equations(offsets_px), non_negative, weights);
+  }
+
+  /// The same in two steps: one for all terms if they are changed together, else one for each.
+  std::vector<Equations> equations(const std::vector<double>& offsets_px) const;
+  double solve(const std::vector<Equations>& equations, const std::vector<bool>& non_negative, MatrixXd* weights) const;
+  /// Another offset for one of the pairs.
+  void move(std::vector<Equations>& equations, const std::vector<double>& offsets_px, std::size_t pair) const;
+
+ private:
+  /// What the equations for the weights of the terms from `first` on take from the error at best; puts the weights in
+  /// their columns.
+  double change(const Equations& its, int first, const std::vector<bool>& non_negative, MatrixXd* weights) const;
+  /// The rows of a pair, as far as they are about the first so many pairs.
+  void fill(std::vector<Equations>& equations, const std::vector<double>& offsets_px, std::size_t pair,
+            std::size_t others) const;
+  double product(const Moments& moments, double offset_a, double offset_b) const;
+  double target(int term, double offset_px) const;
+
+  int terms_;
+  bool joint_;
+  double constant_ = 0;
+  std::vector<Moments> quadratic_;  ///< per pair of terms: AxisError::pair_of
+  std::vector<Moments> linear_;     ///< per term
+};
+
+QuadraticForm::QuadraticForm(const ChannelOnPixels& channel, const Responses& beta, const VectorXd& sums, bool joint,
+                             bool searches)
+    : terms_(channel.terms()), joint_(joint) {
+  const PowerGrid& grid = channel.grid();
+  const AxisError error = channel.axis_error(beta);
+  // The response of the centre alone, less the model's.
+  const MatrixXd rest = (-channel.model()).rowwise() + sums.transpose();
+  const MatrixXd quadratic = grid.to_fine(error.quadratic);
+  const MatrixXd linear_of_model =
+      joint ? grid.to_fine(error.linear) : MatrixXd(MatrixXd::Zero(rest.rows(), rest.cols()));
+  VectorXd constant = joint ? VectorXd(grid.to_fine(error.constant)) : VectorXd(VectorXd::Zero(rest.rows()));
+  for (int t = 0; t < terms_; ++t) {
+    VectorXd linear = linear_of_model.col(t);
+    for (int other = 0; other < terms_; ++other) {
+      if (!joint && other != t) continue;
+      linear -= quadratic.col(AxisError::pair_of(t, other)).cwiseProduct(rest.col(other));
+    }
+    constant -= rest.col(t).cwiseProduct(linear_of_model.col(t) + linear);
+    linear_.push_back(Moments::of_fine(grid, std::move(linear), searches));
+  }
+  for (Index pair = 0; pair < error.quadratic.cols(); ++pair) {
+    quadratic_.push_back(Moments::of_coarse(grid, error.quadratic.col(pair)));
+  }
+  constant_ = constant.dot(grid.fine.weight);
+}
+
+double QuadraticForm::target(int term, double offset_px) const {
+  const Moments& moments = linear_[term];
+  double sum = 0;
+  for (const auto& [k, share] : pixels_of(offset_px)) {
+    if (share > 0) sum += share * 2 * (moments[k] - moments[0]);
+  }
+  return sum;
+}
+
+double QuadraticForm::product(const Moments& moments, double offset_a, double offset_b) const {
+  const auto of_pixels = [&](int k, int l) {
+    return 2 * (moments[k + l] + moments[std::abs(k - l)]) - 4 * (moments[k] + moments[l] - moments[0]);
+  };
+  const auto a = pixels_of(offset_a);
+  const auto b = pixels_of(offset_b);
+  if (a[1].share == 0 && b[1].share == 0) return of_pixels(a[0].offset_px, b[0].offset_px);
+  double sum = 0;
+  for (const auto& [k, share_k] : a) {
+    for (const auto& [l, share_l] : b) {
+      if (share_k != 0 && share_l != 0) sum += share_k * share_l * of_pixels(k, l);
+    }
+  }
+  return sum;
+}
+
+/// Solves equations for weights of which those marked in `non_negative` are not below 0. What would be below is held
+/// at 0, one entry after the other; `right` is 0 there at the end.
+VectorXd least_squares(MatrixXd& matrix, VectorXd& right, const std::vector<bool>& non_negative) {
+  const auto size = static_cast<int>(right.size());
+  std::vector<bool> held(size, false);
+  for (;;) {
+    VectorXd x = matrix.selfadjointView<Eigen::Lower>().llt().solve(right);
+    int worst = -1;
+    for (int row = 0; row < size; ++row) {
+      if (non_negative[row] && !held[row] && x[row] < 0 && (worst < 0 || x[row] < x[worst])) worst = row;
+    }
+    if (worst < 0) return x;
+    held[worst] = true;
+    matrix.row(worst).head(worst).setZero();
+    matrix.col(worst).tail(size - worst).setZero();
+    matrix(worst, worst) = 1;
+    right[worst] = 0;
+  }
+}
+
+std::vector<Equations> QuadraticForm::equations(const std::vector<double>& offsets_px) const {
+  const auto size = static_cast<Index>(offsets_px.size()) * (joint_ ? terms_ : 1);
+  std::vector<Equations> result(joint_ ? 1 : terms_, {MatrixXd(size, size), VectorXd(size)});
+  // Of two pairs the later one fills what belongs to both.
+  for (std::size_t pair = 0; pair < offsets_px.size(); ++pair) fill(result, offsets_px, pair, pair + 1);
+  return result;
+}
+
+void QuadraticForm::move(std::vector<Equations>& equations, const std::vector<double>& offsets_px,
+                         std::size_t pair) const {
+  fill(equations, offsets_px, pair, offsets_px.size());
+}
+
+void QuadraticForm::fill(std::vector<Equations>& equations, const std::vector<double>& offsets_px, std::size_t pair,
+                         std::size_t others) const {
+  const auto pairs = static_cast<int>(offsets_px.size());
+  for (int first = 0; first < static_cast<int>(equations.size()); ++first) {
+    Equations& its = equations[first];
+    const auto size = static_cast<int>(its.right.size());
+    for (auto row = static_cast<int>(pair); row < size; row += pairs) {
+      const int t = first + row / pairs;
+      its.right[row] = target(t, offsets_px[pair]);
+      for (int start = 0; start < size; start += pairs) {
+        const Moments& moments = quadratic_[AxisError::pair_of(t, first + start / pairs)];
+        for (int i = 0; i < static_cast<int>(others); ++i) {
+          const int column = start + i;
+          its.matrix(std::max(row, column), std::min(row, column)) = product(moments, offsets_px[pair], offsets_px[i]);
+        }
+      }
+    }
+  }
+}
+
+double QuadraticForm::solve(const std::vector<Equations>& equations, const std::vector<bool>& non_negative,
+                            MatrixXd* weights) const {
+  if (weights != nullptr) weights->setZero(equations[0].right.size() / (joint_ ? terms_ : 1), terms_);
+  double value = constant_;
+  for (std::size_t i = 0; i < equations.size(); ++i) {
+    value += change(equations[i], static_cast<int>(i), non_negative, weights);
+  }
+  return value;
+}
+
+double QuadraticForm::change(const Equations& its, int first, const std::vector<bool>& non_negative,
+                             MatrixXd* weights) const {
+  const auto size = static_cast<int>(its.right.size());
+  const int pairs = size / (joint_ ? terms_ : 1);
+  std::vector<bool> not_below(size);
+  for (int row = 0; row < size; ++row) not_below[row] = non_negative[first + row / pairs];
+  MatrixXd matrix = its.matrix;
+  VectorXd right = its.right;
+  // A term of no or little scale must not grow without bound.
+  constexpr double ridge = 1e-11;
+  matrix.diagonal().array() += ridge * matrix.diagonal().maxCoeff() + std::numeric_limits<double>::min();
+  const VectorXd x = least_squares(matrix, right, not_below);
+  if (weights != nullptr) {
+    for (int row = 0; row < size; ++row) (*weights)(row % pairs, first + row / pairs) = x[row];
+  }
+  return -right.dot(x);
+}
+
+using Forms = std::vector<QuadraticForm>;
+
+double least_error(const Forms& forms, const std::vector<double>& offsets_px, const std::vector<bool>& non_negative) {
+  double sum = 0;
+  for (const QuadraticForm& form : forms) sum += form.solve(offsets_px, non_negative, nullptr);
+  return sum;
+}
+
+/// Positions of taps, and the least error with them.
+class Positions {
+ public:
+  Positions(const Forms& forms, const std::vector<bool>& non_negative, int farthest_px, double gap_px,
+            std::vector<double> offsets_px)
+      : forms_(forms),
+        non_negative_(non_negative),
+        farthest_px_(farthest_px),
+        gap_px_(gap_px),
+        offsets_px_(std::move(offsets_px)) {
+    for (const QuadraticForm& form : forms_) {
+      equations_.push_back(form.equations(offsets_px_));
+      error_ += form.solve(equations_.back(), non_negative_, nullptr);
+    }
+    moved_equations_ = equations_;
+  }
+
+  double error() const { return error_; }
+  const std::vector<double>& offsets_px() const { return offsets_px_; }
+
+  /// Moves each tap by a step to either side where that helps. False if it helped nowhere.
+  bool move_each(double step_px) {
+    bool moved = false;
+    for (std::size_t i = 0; i < offsets_px_.size(); ++i) moved |= move(i, -step_px) || move(i, step_px);
+    return moved;
+  }
+
+ private:
+  bool move(std::size_t i, double by_px) {
+    constexpr double worthwhile = 1 - 1e-4;
+    const double before = offsets_px_[i];
+    const double after = before + by_px;
+    const double low = (i == 0 ? 0 : offsets_px_[i - 1]) + gap_px_;
+    const double high = i + 1 < offsets_px_.size() ? offsets_px_[i + 1] - gap_px_ : farthest_px_;
+    if (after < low || after > high) return false;
+    offsets_px_[i] = after;
+    double error_after = 0;
+    // No channel has an error below 0.
+    for (std::size_t c = 0; c < forms_.size() && error_after < error_ * worthwhile; ++c) {
+      moved_equations_[c] = equations_[c];
+      forms_[c].move(moved_equations_[c], offsets_px_, i);
+      error_after += forms_[c].solve(moved_equations_[c], non_negative_, nullptr);
+    }
+    if (error_after < error_ * worthwhile) {
+      error_ = error_after;
+      std::swap(equations_, moved_equations_);
+      return true;
+    }
+    offsets_px_[i] = before;
+    return false;
+  }
+
+  const Forms& forms_;
+  const std::vector<bool>& non_negative_;
+  double farthest_px_;
+  double gap_px_;  ///< least distance of two taps
+  std::vector<double> offsets_px_;
+  std::vector<std::vector<Equations>> equations_;        ///< per channel
+  std::vector<std::vector<Equations>> moved_equations_;  ///< where a move is tried
+  double error_ = 0;
+};
+
+/// Moves one tap after the other by a step as long as that helps, with ever smaller steps. Returns the error.
+double search(const Forms& forms, std::vector<double>& offsets_px, int farthest_px, double first_step_px,
+              double last_step_px, const std::vector<bool>& non_negative) {
+  constexpr double least_gap_px = 0.25;
+  Positions positions(forms, non_negative, farthest_px, last_step_px >= 1 ? 1 : least_gap_px, offsets_px);
+  const int halvings = static_cast<int>(std::log2(first_step_px / last_step_px));
+  for (int i = 0; i <= halvings; ++i) {
+    while (positions.move_each(std::ldexp(first_step_px, -i))) continue;
+  }
+  offsets_px = positions.offsets_px();
+  return positions.error();
+}
+
+/// The given offsets and others whose distances grow exponentially, the most promising first.
+std::vector<std::vector<double>> starts(const Forms& forms, const std::vector<double>& given_px, int farthest_px,
+                                        Fetch fetch, const std::vector<bool>& non_negative) {
+  std::vector<std::pair<double, std::vector<double>>> all = {{least_error(forms, given_px, non_negative), given_px}};
+  const auto pairs = static_cast<int>(given_px.size());
+  for (const double growth : {1.0, 2.0, 3.0, 4.0, 5.0}) {
+    for (double reach_px = farthest_px; reach_px > pairs && reach_px > 0.15 * farthest_px; reach_px *= 0.85) {
+      std::vector<double> offsets_px;
+      for (int i = 1; i <= pairs; ++i) {
+        double offset_px = reach_px * std::expm1(growth * i / pairs) / std::expm1(growth);
+        if (fetch == Fetch::integer) offset_px = std::round(offset_px);
+        offsets_px.push_back(std::max(offset_px, (offsets_px.empty() ? 0 : offsets_px.back()) + 1));
+      }
+      if (offsets_px.back() > farthest_px) continue;
+      all.emplace_back(least_error(forms, offsets_px, non_negative), std::move(offsets_px));
+    }
+  }
+  std::sort(all.begin(), all.end());
+  std::vector<std::vector<double>> result;
+  result.reserve(all.size());
+  for (auto& [error, offsets_px] : all) result.push_back(std::move(offsets_px));
+  return result;
+}
+
+}  // namespace
+
+Responses responses_of(const PlacedTaps& taps, int channel, const PowerGrid& grid) {
+  const MatrixXd& weights = taps.weights[channel];
+  Responses responses(grid.fine.size(), weights.cols());
+  for (Index t = 0; t < weights.cols(); ++t) {
+    VectorXd row = VectorXd::Zero(grid.fine.size());
+    row[0] = weights(0, t);
+    for (std::size_t i = 0; i < taps.offsets_px.size(); ++i) {
+      for (const auto& [k, share] : pixels_of(taps.offsets_px[i])) {
+        // Both taps of a pair reach the centre pixel.
+        if (share > 0) row[k] += weights(static_cast<Index>(i) + 1, t) * share * (k == 0 ? 2 : 1);
+      }
+    }
+    responses.col(t) = grid.response(row);
+  }
+  return responses;
+}
+
+PlacedTaps fit_taps(const std::array<ChannelOnPixels, 3>& channels, std::vector<double> offsets_px, Search how,
+                    int farthest_px, Fetch fetch, bool joint, const std::vector<bool>& non_negative,
+                    const std::array<VectorXd, 3>& sums) {
+  PlacedTaps taps{std::move(offsets_px), {}};
+  std::array<Responses, 3> beta;
+  for (int c = 0; c < 3; ++c) beta[c] = channels[c].model();
+  const auto forms = [&](bool searches) {
+    Forms result;
+    for (int c = 0; c < 3; ++c) result.emplace_back(channels[c], beta[c], sums[c], joint, searches);
+    return result;
+  };
+  const auto weigh = [&](const Forms& its_forms, double share_of_new) {
+    for (int c = 0; c < 3; ++c) {
+      MatrixXd pairs;
+      its_forms[c].solve(taps.offsets_px, non_negative, &pairs);
+      MatrixXd all(pairs.rows() + 1, pairs.cols());
+      all.bottomRows(pairs.rows()) = pairs;
+      all.row(0) = sums[c].transpose() - 2 * pairs.colwise().sum();
+      for (Index t = 0; t < all.cols(); ++t) {
+        // The pairs are not negative, but may leave less than nothing for the centre.
+        const double least_centre = 1e-5 * sums[c][t];
+        if (!non_negative[static_cast<std::size_t>(t)] || all(0, t) >= least_centre) continue;
+        all.col(t) *= (sums[c][t] - least_centre) / (sums[c][t] - all(0, t));
+        all(0, t) = least_centre;
+      }
+      taps.weights[c] = share_of_new == 1 ? all : MatrixXd(share_of_new * all + (1 - share_of_new) * taps.weights[c]);
+      beta[c] = responses_of(taps, c, channels[c].grid());
+    }
+  };
+  // The other axis first has the model's response, then that of the taps found so far.
+  const double last_step_px = fetch == Fetch::linear ? 1.0 / 32 : 1;
+  const Forms first_forms = forms(how != Search::nowhere);
+  std::vector<std::vector<double>> candidates = {taps.offsets_px};
+  if (how == Search::everywhere) candidates = starts(first_forms, taps.offsets_px, farthest_px, fetch, non_negative);
+  constexpr std::size_t most_candidates = 10;
+  candidates.resize(std::min(candidates.size(), most_candidates));
+  const double first_step_px = std::max(1.0, std::exp2(std::floor(std::log2(candidates[0].back() / 16))));
+  double least = HUGE_VAL;
+  if (how == Search::nowhere) candidates.clear();
+  for (std::vector<double>& offsets : candidates) {
+    const double error = search(first_forms, offsets, farthest_px, first_step_px, last_step_px, non_negative);
+    if (error < least) {
+      least = error;
+      taps.offsets_px = offsets;
+    }
+  }
+  weigh(first_forms, 1);
+  const int more_searches = how == Search::everywhere ? 2 : how == Search::nearby ? 1 : 0;
+  for (int i = 0; i < more_searches; ++i) {
+    const Forms its_forms = forms(true);
+    search(its_forms, taps.offsets_px, farthest_px, std::min(first_step_px, 4.0), last_step_px, non_negative);
+    weigh(its_forms, 1);
+  }
+  // Both axes have the same weights: halfway steps settle where neither gains by a change.
+  if (joint) {
+    const int settling_steps = how == Search::everywhere ? 6 : 3;
+    for (int i = 0; i < settling_steps; ++i) weigh(forms(false), 0.5);
+  }
+  return taps;
+}
+
+}  // namespace dermis

@@ -1,0 +1,32 @@
+// Random G-buffers: bumpy surfaces at two depths, patches of material, any format, strides, camera and options.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "support/guarded_image.hpp"
+#include "dermis/plan.hpp"
+
+/// What to leave out or to hold still.
+struct RandomFrameChoice {
+  int width;
+  int height;
+  bool with_gaps = true;    ///< random strides
+  bool float_only = false;  ///< f32 for all colours
+  std::optional<int> materials = {};
+  std::optional<double> jitter = {};
+};
+
+/// A frame, the memory behind it, and a plan's arguments that suit it.
+struct RandomFrame {
+  int width, height;
+  std::vector<dermis::Material> materials;
+  dermis::Options options;
+  std::optional<GuardedImage> light, albedo, depth, material, mask, matte, beauty, scattered, result;
+  dermis::Camera camera;
+  double mm_per_unit = 1;
+
+  RandomFrame(Random& random, const RandomFrameChoice& choice);
+
+  dermis::Frame frame();
+};

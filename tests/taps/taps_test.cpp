@@ -1,0 +1,209 @@
+#include "dermis/taps.hpp"
+
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <vector>
+
+#include "support/catch.hpp"
+#include "dermis/error.hpp"
+#include "support/random.hpp"
+#include "taps/tables/radial_table.hpp"
+
+using dermis::make_taps;
+using dermis::Model;
+using dermis::Placement;
+using dermis::Profile;
+using dermis::Rung;
+using dermis::Taps;
+using dermis::TapsDesign;
+
+namespace {
+
+/// Weights of one rung on a plane parallel to the screen, as a pass has them: of the centre, then of each pair.
+std::vector<double> weights_of(const Taps& taps, const Rung& rung, std::size_t term, int c) {
+  const auto along = [&](std::size_t t, std::size_t pair) {
+    return rung.weights[pair * taps.terms.size() + t].length_mm[c] *
+           dermis::value_at(taps.terms[t].falloff, c, rung.offsets_px[pair] / static_cast<double>(rung.footprint));
+  };
+  std::vector<double> weights = {
+      rung.core_gain[term][c] *
+      dermis::value_at(taps.terms[term].core, c,
+                       std::sqrt(static_cast<double>(rung.core_half_width_px / rung.footprint)))};
+  for (std::size_t pair = 0; pair < rung.offsets_px.size(); ++pair) {
+    const double share = rung.weights[pair * taps.terms.size() + term].share[c];
+    weights.push_back(along(term, pair) + share * along(0, pair));
+  }
+  return weights;
+}
+
+double sum_of(const std::vector<double>& weights) {
+  return 2 * std::accumulate(weights.begin() + 1, weights.end(), weights[0]) - weights[0];
+}
+
+constexpr TapsDesign by_importance(int count) {
+  return {.model = Model::pre_integrated, .count = count, .placement = Placement::importance};
+}
+
+const TapsDesign some_designs[] = {
+    by_importance(3),
+    by_importance(25),
+    by_importance(127),
+    {.model = Model::pre_integrated, .count = 15, .placement = Placement::uniform},
+    {.model = Model::pre_integrated, .count = 9, .placement = Placement::quadratic},
+    {.model = Model::artist, .count = 17},
+    {.model = Model::guided, .count = 11, .guide = 4},
+    {.model = Model::svd, .rank = 3, .count = 25},
+    {.model = Model::gaussians, .rank = 4, .count = 25},
+    {.model = Model::optimised, .count = 7, .placement = Placement::optimised},
+    {.model = Model::optimised, .rank = 2, .count = 17, .placement = Placement::optimised},
+    {.model = Model::optimised, .rank = 3, .count = 25, .placement = Placement::optimised, .non_negative = true},
+};
+
+}  // namespace
+
+TEST_CASE("every rung holds all light in sorted, distinct whole-pixel taps", "[taps]") {
+  Random random(200);
+  const double d = std::exp(random.uniform(-10, 10));
+  // At this width the narrowest Gaussian rounds to a little less than nothing at a far tap.
+  constexpr double vanishing = 0.0099031244;
+  for (const Profile& profile : {dermis::preset("skin").profile, Profile::burley({d, d / 2, d / 5}),
+                                 Profile::burley({vanishing, vanishing / 2, vanishing / 5})}) {
+    for (const TapsDesign& design : some_designs) {
+      const Taps taps = make_taps(profile, design);
+      CAPTURE(test_seed(), d, static_cast<int>(design.model), design.rank, design.count);
+      REQUIRE(static_cast<int>(taps.terms.size()) == design.rank);
+      CHECK(taps.terms[0].normalised);
+      for (int c = 0; c < 3; ++c) {
+        // What a constant keeps: terms that are not normalised keep their sum, whatever the taps.
+        double kept = 0;
+        for (const dermis::Term& term : taps.terms) {
+          const double sum = term.normalised ? 1 : static_cast<double>(term.sum[c]);
+          kept += static_cast<double>(term.scale[c]) * sum * sum;
+        }
+        CHECK(kept == Approx(1).epsilon(1e-5));
+      }
+      for (const Rung& rung : taps.rungs) {
+        CAPTURE(rung.footprint * taps.radius_mm);
+        REQUIRE(static_cast<int>(rung.offsets_px.size()) <= design.count / 2);
+        REQUIRE(rung.weights.size() == rung.offsets_px.size() * taps.terms.size());
+        int previous = 0;
+        for (const int offset_px : rung.offsets_px) {
+          REQUIRE(offset_px > previous);
+          previous = offset_px;
+        }
+        for (std::size_t t = 0; t < taps.terms.size(); ++t) {
+          for (int c = 0; c < 3; ++c) {
+            const std::vector<double> weights = weights_of(taps, rung, t, c);
+            for (const double weight : weights) REQUIRE(std::isfinite(weight));
+            if (!taps.terms[t].normalised) continue;
+            for (const double weight : weights) REQUIRE(weight >= 0);
+            // A tap that lies where the tables of a narrow channel know of no light loses the light of its run, and
+            // the narrowest of several Gaussians may have all of it there; a pass divides by the sum.
+            REQUIRE(sum_of(weights) < 1 + 5e-3);
+            if (design.model != Model::gaussians) REQUIRE(sum_of(weights) > 1 - 0.03);
+          }
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE("on a plane the passes weigh as the tap set does", "[taps]") {
+  const Profile profile = dermis::preset("marble").profile;
+  for (const TapsDesign& design : some_designs) {
+    const Taps taps = make_taps(profile, design);
+    for (const float radius_px : {5.3F, 31.0F, 90.0F}) {
+      const Rung& rung = taps.rungs[Taps::rung_index(radius_px)];
+      const dermis::TapSet set = dermis::make_tap_set(profile, design, 1 / static_cast<double>(rung.footprint));
+      // The ladder starts its search for taps at those of the next rung, so that only what is not searched is the same.
+      if (design.placement == Placement::optimised && radius_px > static_cast<float>(design.count / 2)) continue;
+      const auto middle = static_cast<int>(set.offsets_px.size()) / 2;
+      CAPTURE(static_cast<int>(design.model), design.count, radius_px);
+      REQUIRE(static_cast<int>(rung.offsets_px.size()) == middle);
+      for (int c = 0; c < 3; ++c) {
+        const std::vector<double> weights = weights_of(taps, rung, 0, c);
+        for (int i = 0; i <= middle; ++i) {
+          // Weights are rounded to float32 in the rung; those at which a narrow term has vanished are left out.
+          CHECK(set.terms[0].weights[middle + i][c] == Approx(weights[i]).margin(1e-5));
+          if (i > 0) CHECK(set.offsets_px[middle + i] == rung.offsets_px[i - 1]);
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE("a kernel that the taps can cover has one tap per pixel", "[taps]") {
+  const Profile profile = dermis::preset("marble").profile;
+  const Taps taps = make_taps(profile, by_importance(25));
+  const Rung& rung = taps.rungs[Taps::rung_index(11)];
+  CHECK(rung.core_half_width_px == 0.5F);
+  REQUIRE(rung.offsets_px.size() == 11);
+  const std::vector<double> weights = weights_of(taps, rung, 0, 0);
+  for (int i = 0; i < 10; ++i) {
+    REQUIRE(rung.offsets_px[i] == i + 1);
+    const double footprint = rung.footprint;
+    const double begin = (i + 0.5) / footprint;
+    const double end = (i + 1.5) / footprint;
+    CHECK(weights[i + 1] == Approx(profile.edge_tail(0, begin) - profile.edge_tail(0, end)).epsilon(1e-5));
+  }
+}
+
+TEST_CASE("rungs divide octaves in sixteen", "[taps]") {
+  CHECK(Taps::rung_index(0.49F) == -1);
+  CHECK(Taps::rung_index(std::numeric_limits<float>::quiet_NaN()) == -1);
+  CHECK(Taps::rung_index(0.5F) == 0);
+  CHECK(Taps::rung_index(1.0F) == 16);
+  CHECK(Taps::rung_index(1.0625F) == 17);
+  CHECK(Taps::rung_index(std::numeric_limits<float>::infinity()) == Taps::octaves * 16 - 1);
+  const Taps taps = make_taps(dermis::preset("wax").profile, by_importance(7));
+  for (const float radius_px : {0.6F, 3.3F, 100.0F, 9000.0F}) {
+    const Rung& rung = taps.rungs[Taps::rung_index(radius_px)];
+    CHECK(rung.footprint * taps.radius_mm == Approx(radius_px).epsilon(1.0 / 32));
+  }
+}
+
+TEST_CASE("tables follow the profile", "[taps]") {
+  for (const dermis::Preset& preset : dermis::presets()) {
+    const Taps taps = make_taps(preset.profile, by_importance(5));
+    CAPTURE(preset.name);
+    for (int c = 0; c < 3; ++c) {
+      for (double share = 0.02; share < 0.99; share += 0.0371) {
+        const double x = preset.profile.half_width(c, share);
+        // The octaves of the falloff reach to a hundredth of the widest channel's radius, those of the core to a
+        // thousandth and less.
+        if (x > taps.radius_mm / 60) {
+          CHECK(dermis::value_at(taps.terms[0].falloff, c, x) == Approx(preset.profile.marginal(c, x)).epsilon(1.5e-2));
+        }
+        if (x > taps.radius_mm / 2000) {
+          CHECK(dermis::value_at(taps.terms[0].core, c, std::sqrt(x)) == Approx(share).epsilon(4e-3));
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE("a bad number of taps is refused", "[taps]") {
+  const Profile profile = dermis::preset("skin").profile;
+  for (const int count : {-1, 0, 1, 4, 128, 2049}) {
+    CHECK_THROWS_WITH(make_taps(profile, {.count = count}),
+                      "taps: got " + std::to_string(count) + ", want an odd number, 3..2047");
+  }
+}
+
+TEST_CASE("the cheapest design meets its tolerance", "[taps]") {
+  const Profile profile = dermis::preset("skin").profile;
+  const double pixel_mm = 0.15;
+  double reads = 0;
+  for (const double tolerance : {0.05, 0.015, 0.004}) {
+    const auto design = dermis::cheapest_design(profile, tolerance, pixel_mm);
+    CAPTURE(tolerance);
+    REQUIRE(design);
+    CHECK(dermis::make_tap_set(profile, *design, pixel_mm).predicted_rel_l2 <= tolerance);
+    CHECK((1 + design->rank) * design->count >= reads);
+    reads = (1 + design->rank) * design->count;
+  }
+  CHECK(reads > 40);
+  CHECK_FALSE(dermis::cheapest_design(profile, 1e-6, pixel_mm));
+  CHECK_THROWS_WITH(dermis::cheapest_design(profile, 0, pixel_mm), Catch::Contains("tolerance"));
+}

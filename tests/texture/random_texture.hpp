@@ -1,0 +1,31 @@
+// Random textures: charts of any shape, bumpy stretches, any format and strides.
+#pragma once
+
+#include <optional>
+
+#include "support/guarded_image.hpp"
+#include "dermis/texture.hpp"
+
+/// What to leave out or to hold still.
+struct RandomTextureChoice {
+  int width;
+  int height;
+  dermis::TextureMethod method;
+  bool with_gaps = true;            ///< random strides
+  std::optional<bool> charts = {};  ///< whether there is a mask
+  std::optional<bool> stretch = {};
+  std::optional<bool> albedo = {};
+};
+
+/// A texture, the memory behind it, and a plan's arguments that suit it.
+struct RandomTexture {
+  int width, height;
+  dermis::Profile profile;
+  dermis::TextureOptions options;
+  double mm_per_texel;
+  std::optional<GuardedImage> light, albedo, mask, stretch_u, stretch_v, scattered, result;
+
+  RandomTexture(Random& random, const RandomTextureChoice& choice);
+
+  dermis::TextureFrame frame();
+};
