@@ -9,14 +9,14 @@
 
 #include "dermis/error.hpp"
 #include "measure/matching.hpp"
+#include "measure/registry.hpp"
+#include "measure/start_up.hpp"
 #include "paper/paper.hpp"
 #include "report/picture_report.hpp"
 #include "report/plots.hpp"
-#include "support/progress.hpp"
-#include "measure/registry.hpp"
 #include "report/report.hpp"
-#include "measure/start_up.hpp"
 #include "stress/stress.hpp"
+#include "support/progress.hpp"
 
 namespace {
 

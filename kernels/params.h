@@ -8,18 +8,18 @@ typedef long Bytes;
 typedef long long Bytes;
 #endif
 
-// Pixels on a side of a cell; all of them share their tap positions. It is part of the method, not of a device: the
+// Pixels on a side of a block; all of them share their tap positions. It is part of the method, not of a device: the
 // result depends neither on the vector width nor on the tiles.
-#define CELL 16
+#define BLOCK 16
 
 // Rows that the vertical pass of a tile computes as soon as the horizontal one has made what it reads of them.
-#define BAND 32
+#define STRIP_ROWS 32
 
 // Octaves of r^4 in a table of the separable passes.
 #define OCTAVES 32
 
-// Parts of a rung that have weights of their own for flat cells.
-#define RUNG_PARTS 8
+// Parts of a level that have weights of their own for flat blocks.
+#define LEVEL_PARTS 8
 
 // Pixels that a window has to the left and to the right of those that taps may fall on, so that a vector that straddles
 // the edge stays in memory.
@@ -51,8 +51,8 @@ typedef long long Bytes;
 #define TILE_NARROW 1
 #define TILE_UNLIT 2
 #define TILE_UNIFORM 3
-#define TILE_FLAT 4    // all cells are flat: no depth terms
-#define TILE_SMOOTH 5  // all cells are flat or smooth: no depth of taps
+#define TILE_FLAT 4    // all blocks are flat: no depth terms
+#define TILE_SMOOTH 5  // all blocks are flat or smooth: no depth of taps
 #define TILE_CURVED 6
 #define TILE_REUSED 7  // nothing within reach has changed since the frame before
 #define TILE_KINDS 8
@@ -91,8 +91,8 @@ struct FrameParams {
   int width;
   int height;
   int stride;  // of the plane of materials, bytes
-  int cells_x;
-  int cells_y;
+  int blocks_x;
+  int blocks_y;
   int tile_width;
   int tile_height;  // the largest one
   int least_tile_height;
@@ -109,52 +109,52 @@ struct FrameParams {
   float widest_turn;  // how far a tap that is turned leaves its axis, px per px of its offset
 };
 
-// What classification learns of a cell.
-struct CellParams {
+// What classification learns of a block.
+struct BlockParams {
   float depth_low, depth_high;      // mm; of all pixels with a material
   float along_x_low, along_x_high;  // change of depth to the next pixel of the same material
   float along_y_low, along_y_high;
-  float finest_x, finest_y;    // largest footprint of a pixel that scatters, px per mm, times its width factor
+  float finest_x, finest_y;    // largest px_per_mm of a pixel that scatters, px per mm, times its width factor
   unsigned int scattering[4];  // a bit for each material that some pixel scatters by
   int material;                // byte of all pixels of the plane of materials; 0 if they differ
   int scattered;               // pixels
   int narrow;
 };
 
-// What one pass does in a cell.
-struct CellPass {
-  float footprint;  // that its rungs are chosen by, px per mm; 0 if nothing scatters
-  int shape;
-  int shear;     // of flat and smooth cells in the vertical pass, px per row times 4096
+// What one pass does in a block.
+struct BlockPass {
+  float px_per_mm;  // that its levels are chosen by, px per mm; 0 if nothing scatters
+  int block_class;
+  int shear;     // of flat and smooth blocks in the vertical pass, px per row times 4096
   int material;  // 1 + the index of the only one that taps fall on, all in the frame; 0 if there is more than that
 };
 
-// Shapes of a cell in a pass.
-#define SHAPE_EMPTY -1  // no pixel has a material
-#define SHAPE_FLAT 0
-#define SHAPE_SMOOTH 1
-#define SHAPE_CURVED 2
+// Shapes of a block in a pass.
+#define CLASS_EMPTY -1  // no pixel has a material
+#define CLASS_FLAT 0
+#define CLASS_SMOOTH 1
+#define CLASS_CURVED 2
 
-struct CellPasses {
-  struct CellPass x, y;
+struct BlockPasses {
+  struct BlockPass x, y;
 };
 
-// How the pixels of a cell are scattered in one pass.
+// How the pixels of a block are scattered in one pass.
 struct ChoiceParams {
-  int way;
+  int variant;
   int material;    // index
-  int rung;        // index
+  int level;       // index
   int weight;      // index of the first flat or smooth one
-  int shear;       // as in CellPass
+  int shear;       // as in BlockPass
   int padding[3];  // the memory of the next worker, which follows them, has to be aligned
 };
 
-// There is nothing, or all taps fall on the material of the cell, which has that shape, or they fall on anything.
-#define WAY_EMPTY SHAPE_EMPTY
-#define WAY_FLAT SHAPE_FLAT
-#define WAY_SMOOTH SHAPE_SMOOTH
-#define WAY_CURVED SHAPE_CURVED
-#define WAY_GENERAL 3
+// There is nothing, or all taps fall on the material of the block, which has that shape, or they fall on anything.
+#define VARIANT_EMPTY CLASS_EMPTY
+#define VARIANT_FLAT CLASS_FLAT
+#define VARIANT_SMOOTH CLASS_SMOOTH
+#define VARIANT_CURVED CLASS_CURVED
+#define VARIANT_GENERAL 3
 
 // Part of a frame in memory: see window.h.
 struct WindowParams {
@@ -186,8 +186,8 @@ struct MaterialParams {
   float relative_width[3];
   int width_follows_albedo;
   int id;
-  int first_rung;
-  int rungs;
+  int first_level;
+  int levels;
   int first_term;
   struct TableParams radial;     // exact integral: R(r)
   struct TableParams cumulated;  // exact integral: the light within r
@@ -200,13 +200,13 @@ struct TermParams {
   int normalised;
   int padding[9];
   struct OctavesParams falloff;  // f(r)
-  struct OctavesParams core;     // integral of f over |x| < r
+  struct OctavesParams centre;   // integral of f over |x| < r
 };
 
 // One tap set. Its weights are those of the centre, then of each pair; of every term each time.
-struct RungParams {
-  float footprint;
-  float core_half_width_px;
+struct TapLevelParams {
+  float px_per_mm;
+  float centre_half_width_px;
   int first_offset;
   int pairs;
   int channel_pairs[3];  // those in which a channel has a weight, the first ones; none if its spread is below half a
@@ -218,18 +218,18 @@ struct RungParams {
   int last_offset_px;
 };
 
-// What a pair of taps is worth in one term; of a centre, length_mm is the gain of the core.
+// What a pair of taps is worth in one term; of a centre, length_mm is the gain of the centre.
 struct WeightParams {
   float length_mm[3];
   float share[3];  // of its weight in the first term
 };
 
-// The same on a flat cell.
+// The same on a flat block.
 struct FlatWeight {
   float rgb[3];
 };
 
-// The same on a smooth cell: q and k of taps.hpp times the last two are added, k with the sign of the offset.
+// The same on a smooth block: q and k of taps.hpp times the last two are added, k with the sign of the offset.
 struct SmoothWeight {
   float rgb[3];
   float stretch[3];

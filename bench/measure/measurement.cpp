@@ -5,15 +5,15 @@
 #include <numeric>
 #include <random>
 
-#include "measure/copy.hpp"
 #include "dermis/error.hpp"
-#include "support/machine.hpp"
-#include "opponents/opponents.hpp"
+#include "measure/copy.hpp"
 #include "measure/peak_memory.hpp"
 #include "measure/percentile.hpp"
 #include "measure/start_up.hpp"
-#include "support/stopwatch.hpp"
 #include "measure/truth.hpp"
+#include "opponents/opponents.hpp"
+#include "support/machine.hpp"
+#include "support/stopwatch.hpp"
 
 namespace dermis::bench {
 

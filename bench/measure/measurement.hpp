@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "measure/case.hpp"
 #include "dermis/device.hpp"
+#include "measure/case.hpp"
 
 namespace dermis::bench {
 

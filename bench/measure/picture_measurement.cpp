@@ -4,9 +4,9 @@
 
 #include <algorithm>
 
-#include "measure/copy.hpp"
 #include "dermis/oracle/compare.hpp"
 #include "dermis/oracle/rule_2012.hpp"
+#include "measure/copy.hpp"
 #include "measure/percentile.hpp"
 #include "measure/picture_edges.hpp"
 #include "support/stopwatch.hpp"

@@ -13,8 +13,8 @@
 
 #include "dermis/error.hpp"
 #include "dermis/plan.hpp"
-#include "opponents/opponents.hpp"
 #include "measure/peak_memory.hpp"
+#include "opponents/opponents.hpp"
 #include "support/stopwatch.hpp"
 
 namespace dermis::bench {

@@ -11,8 +11,8 @@
 #include <set>
 
 #include "dermis/error.hpp"
-#include "opponents/opponents.hpp"
 #include "measure/pixel_kernel.hpp"
+#include "opponents/opponents.hpp"
 
 namespace dermis::bench {
 
@@ -104,7 +104,7 @@ Truth exact_convolution(const Scene& scene) {
 constexpr int block_width_px = 16;
 constexpr int block_height_px = 4;
 
-/// Blocks one of which is affordable in every cell of a grid, so that their number is about that.
+/// Blocks one of which is affordable in every block of a grid, so that their number is about that.
 int affordable_blocks(const Scene& scene) {
   constexpr double pairs = 2.5e8;                                    // a few seconds of two cores
   const double typical_reach_px = reach * scene.spec.kernel_px / 2;  // most of the scene is at depth 2 and beyond
@@ -112,20 +112,20 @@ int affordable_blocks(const Scene& scene) {
                   static_cast<int>(pairs / std::pow(2 * typical_reach_px + 1, 2) / (block_width_px * block_height_px)));
 }
 
-/// The covered pixels of blocks at random places, one in every cell of a grid over the covered ellipse.
+/// The covered pixels of blocks at random places, one in every block of a grid over the covered ellipse.
 std::vector<std::size_t> sampled_pixels(const Scene& scene) {
   const int width = scene.spec.width;
   const int height = scene.spec.height;
   const double half = std::min(0.5, std::sqrt(scene.spec.coverage_percent / (100 * std::numbers::pi)));
   const double left = (0.5 - half) * width;
   const double top = (0.5 - half) * height;
-  const int cells = std::max(1, static_cast<int>(std::sqrt(affordable_blocks(scene))));
+  const int blocks = std::max(1, static_cast<int>(std::sqrt(affordable_blocks(scene))));
   std::mt19937 random(1);
   std::set<std::size_t> pixels;
-  for (int i = 0; i < cells * cells; ++i) {
-    const auto place = [&](int cell) { return (cell + static_cast<double>(random()) * 0x1p-32) / cells * 2 * half; };
-    const int first_x = static_cast<int>(left + place(i % cells) * width) / block_width_px * block_width_px;
-    const int first_y = static_cast<int>(top + place(i / cells) * height) / block_height_px * block_height_px;
+  for (int i = 0; i < blocks * blocks; ++i) {
+    const auto place = [&](int block) { return (block + static_cast<double>(random()) * 0x1p-32) / blocks * 2 * half; };
+    const int first_x = static_cast<int>(left + place(i % blocks) * width) / block_width_px * block_width_px;
+    const int first_y = static_cast<int>(top + place(i / blocks) * height) / block_height_px * block_height_px;
     for (int y = first_y; y < std::min(first_y + block_height_px, height); ++y) {
       for (int x = first_x; x < std::min(first_x + block_width_px, width); ++x) {
         const std::size_t pixel = static_cast<std::size_t>(y) * width + x;

@@ -3,8 +3,8 @@
 #include <cstdint>
 
 #include "measure/aligned.hpp"
-#include "support/half.hpp"
 #include "opponents/opponents.hpp"
+#include "support/half.hpp"
 
 namespace dermis::bench {
 

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <complex>
 
+#include "measure/pixel_kernel.hpp"
 #include "opponents/opponents.hpp"
 #include "support/parallel.hpp"
-#include "measure/pixel_kernel.hpp"
 
 namespace dermis::bench {
 

@@ -4,11 +4,11 @@
 #include <memory>
 #include <vector>
 
-#include "measure/case.hpp"
 #include "dermis/device.hpp"
 #include "dermis/profile.hpp"
-#include "opponents/opponent.hpp"
+#include "measure/case.hpp"
 #include "measure/scene.hpp"
+#include "opponents/opponent.hpp"
 
 namespace dermis::bench {
 

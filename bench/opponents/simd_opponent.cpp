@@ -5,8 +5,8 @@
 #include <bit>
 
 #include "opponents/opponents.hpp"
-#include "support/parallel.hpp"
 #include "opponents/simd_strip.hpp"
+#include "support/parallel.hpp"
 
 namespace dermis::bench {
 

@@ -1,6 +1,6 @@
 // The scene as a texture whose texels all span as much: dermis in texture space.
-#include "measure/aligned.hpp"
 #include "dermis/texture.hpp"
+#include "measure/aligned.hpp"
 #include "opponents/opponents.hpp"
 
 namespace dermis::bench {

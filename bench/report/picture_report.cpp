@@ -8,9 +8,9 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
-#include "report/chart.hpp"
 #include "dermis/error.hpp"
 #include "dermis/version.hpp"
+#include "report/chart.hpp"
 #include "report/gnuplot.hpp"
 #include "support/machine.hpp"
 

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <functional>
 
-#include "report/chart.hpp"
 #include "dermis/error.hpp"
+#include "report/chart.hpp"
 #include "report/gnuplot.hpp"
 
 namespace dermis::bench {

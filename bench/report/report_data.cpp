@@ -3,9 +3,9 @@
 #include <nlohmann/json.hpp>
 
 #include "dermis/version.hpp"
+#include "report/report.hpp"
 #include "support/machine.hpp"
 #include "support/parallel.hpp"
-#include "report/report.hpp"
 
 namespace dermis::bench {
 

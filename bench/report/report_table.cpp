@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
+#include "report/report.hpp"
 #include "support/machine.hpp"
 #include "support/parallel.hpp"
-#include "report/report.hpp"
 
 namespace dermis::bench {
 

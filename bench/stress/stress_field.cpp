@@ -14,7 +14,7 @@ namespace {
 /// Of the largest value: of what has a larger bound the oracle is not sure.
 constexpr double sure_bound = 1e-4;
 
-/// Share of the values that it must be sure of. A frame of a few cells may have most of them on the border of a rung.
+/// Share of the values that it must be sure of. A frame of a few blocks may have most of them on the border of a level.
 double least_sure_share(const StressField& field) {
   constexpr int few_pixels = 40 * 256;
   return field.width_px * field.height_px < few_pixels ? 0.01 : 0.9;

@@ -66,7 +66,7 @@ class StressErrors {
   void add(const oracle::Picture& seen, int seen_x, const oracle::Reference& expected, int expected_x, int width);
 
   /// Writes rel_l2, max_rel, max_ulp, of_bound and non_finite: the first three of all values or of those that the
-  /// oracle is sure of. Of others float32 cannot tell which rung of taps is meant, or whether the kernel is half a
+  /// oracle is sure of. Of others float32 cannot tell which level of taps is meant, or whether the kernel is half a
   /// pixel wide, and the bound takes in both outcomes.
   void write_to(StressRow& row, bool sure_values_only) const;
 

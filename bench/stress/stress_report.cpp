@@ -17,8 +17,8 @@ namespace {
 
 constexpr std::uint32_t seed = 1;
 
-/// A cell; nothing where a number does not apply.
-std::string cell(double value) { return std::isnan(value) ? "" : fmt::format("{:.2g}", value); }
+/// A block; nothing where a number does not apply.
+std::string block(double value) { return std::isnan(value) ? "" : fmt::format("{:.2g}", value); }
 
 std::string table_of(const std::vector<StressRow>& rows) {
   std::string table =
@@ -26,9 +26,9 @@ std::string table_of(const std::vector<StressRow>& rows) {
       "|---|---|---|---|---|---|---|---|---|---|\n";
   for (const StressRow& row : rows) {
     table +=
-        fmt::format("| {}: {} | {} | {} | {} | {} | {} | {} | {} | {} | {} |\n", row.group, row.name, cell(row.rel_l2),
-                    cell(row.max_rel), cell(row.max_ulp), cell(row.of_bound), cell(row.energy), cell(row.overshoot),
-                    row.non_finite, row.promised, row.holds ? "yes" : "**no**: " + row.failure);
+        fmt::format("| {}: {} | {} | {} | {} | {} | {} | {} | {} | {} | {} |\n", row.group, row.name, block(row.rel_l2),
+                    block(row.max_rel), block(row.max_ulp), block(row.of_bound), block(row.energy),
+                    block(row.overshoot), row.non_finite, row.promised, row.holds ? "yes" : "**no**: " + row.failure);
   }
   return table;
 }

@@ -80,7 +80,7 @@ struct Options {
   TapsDesign taps = {.rank = 2};  ///< of every material that does not have its own
   DiscOptions disc = {};          ///< of Method::disc, which has no taps
   /// The vertical pass crosses the horizontal one at a right angle on the surface instead of on the screen: see Taps.
-  /// About half the error where a surface is tilted both ways, for up to twice the time of the cells that are; it
+  /// About half the error where a surface is tilted both ways, for up to twice the time of the blocks that are; it
   /// counts only if there is depth, and no jitter.
   bool sheared = true;
   double jitter = 0;       ///< share of the kernel radius within which taps are rotated per pixel, 0..1
@@ -142,7 +142,7 @@ struct TileMap {
 /// What one run did. Times are of the device, in milliseconds.
 struct Stats {
   double prepare_ms = 0;   ///< memory, images bound to the device
-  double classify_ms = 0;  ///< materials and shape of cells
+  double classify_ms = 0;  ///< materials and shape of blocks
   double scatter_ms = 0;   ///< the passes, and all reading and writing of images that they do
   double finish_ms = 0;    ///< outputs that had to wait for the passes
   double total_ms = 0;     ///< wall clock, transfers included
@@ -153,9 +153,9 @@ struct Stats {
   std::int64_t pixels_scattered = 0;  ///< those that are bad included
   std::int64_t pixels_without_material = 0;
   std::int64_t pixels_narrow = 0;    ///< the kernel is narrower than half a pixel
-  std::int64_t pixels_flat = 0;      ///< of those scattered, on cells that need no depth terms in either pass
-  std::int64_t pixels_smooth = 0;    ///< of the others, on cells that need not the depth of taps in either pass
-  std::int64_t channels_narrow = 0;  ///< of pixels scattered whose cell shows one material: spread below half a pixel
+  std::int64_t pixels_flat = 0;      ///< of those scattered, on blocks that need no depth terms in either pass
+  std::int64_t pixels_smooth = 0;    ///< of the others, on blocks that need not the depth of taps in either pass
+  std::int64_t channels_narrow = 0;  ///< of pixels scattered whose block shows one material: spread below half a pixel
   std::int64_t pixels_bad = 0;       ///< light or albedo not finite; counted where tiles are filtered
   std::int64_t pixels_unlit = 0;     ///< of those scattered by discs: skipped, without light within reach
 

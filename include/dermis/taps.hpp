@@ -47,7 +47,8 @@ struct TapsDesign {
   /// further off, they are as many as bring the error to 5/4 of the model's. 0: all widths get `count`.
   double tolerance = 0;
   /// Kernels of a larger radius, px, have the taps of one half as wide, or a quarter, and so on, which are placed for
-  /// the finer kernel; unless `count` is as large. Each halving makes the ladder in less than half the time: 64..512.
+  /// the finer kernel; unless `count` is as large. Each halving makes the level table in less than half the
+  /// time: 64..512.
   int widest_px = 512;
 
   bool operator==(const TapsDesign&) const = default;
@@ -112,7 +113,7 @@ struct Term {
   bool normalised = true;
   std::array<float, 3> sum{1, 1, 1};  ///< of the weights, where nothing is missing; 1 if normalised
   RadialTable falloff;                ///< f(r), 1/mm
-  RadialTable core;                   ///< integral of f over |x| < r^2: of the root of a distance, to reach nearer to 0
+  RadialTable centre;                 ///< integral of f over |x| < r^2: of the root of a distance, to reach nearer to 0
 };
 
 /// What one pair of taps is worth in one term.
@@ -122,17 +123,17 @@ struct TapWeight {
 };
 
 /// The taps for kernels of about one size in pixels.
-struct Rung {
-  float footprint;                              ///< pixels per mm that the taps were placed for
-  float core_half_width_px;                     ///< the centre tap stands for |x| < this
-  std::vector<std::array<float, 3>> core_gain;  ///< per term: times the core's light
-  std::vector<int> offsets_px;                  ///< one symmetric pair of taps each, at + and -; ascending, > 0
-  std::vector<TapWeight> weights;               ///< of all terms of the first pair, then of the second, ...
-  /// What a tap is worth on a flat cell, for kernel radii nearest to each eighth of the rung: of all terms of the
+struct TapLevel {
+  float px_per_mm;                                ///< pixels per mm that the taps were placed for
+  float centre_half_width_px;                     ///< the centre tap stands for |x| < this
+  std::vector<std::array<float, 3>> centre_gain;  ///< per term: times the centre's light
+  std::vector<int> offsets_px;                    ///< one symmetric pair of taps each, at + and -; ascending, > 0
+  std::vector<TapWeight> weights;                 ///< of all terms of the first pair, then of the second, ...
+  /// What a tap is worth on a flat block, for kernel radii nearest to each eighth of the level: of all terms of the
   /// centre, then of the first pair, ... Multiples of 2^-24; of a normalised term they sum to exactly 1. The centre's
   /// is used if the term is normalised.
   std::array<std::vector<std::array<float, 3>>, 8> flat_weights;
-  /// What the flat weights of the rung's middle (the fifth eighth) change by on a smooth cell: with the stretch q, of
+  /// What the flat weights of the level's middle (the fifth eighth) change by on a smooth block: with the stretch q, of
   /// all terms of the centre, then of the first pair, ... Multiples of 2^-20, which sum to exactly 0 in every term; and
   /// with the skew k, of all terms of the first pair, ..., for the tap at + of a pair, the other one changing by the
   /// opposite.
@@ -140,15 +141,15 @@ struct Rung {
   std::vector<std::array<float, 3>> skew_weights;
 };
 
-/// What the separable passes need to know of a profile: a ladder of tap sets over kernel size, so that
-/// every tap lies on a whole pixel whatever the footprint, and each term's f and its integral as tables, so that a pass
+/// What the separable passes need to know of a profile: a level table of tap sets over kernel size, so that
+/// every tap lies on a whole pixel whatever the px_per_mm, and each term's f and its integral as tables, so that a pass
 /// can weigh each tap by the true distance of the surface points.
 ///
-/// A pass over pixel p of width factor k per channel (1 unless an albedo or mask scales the profile) takes the rung of
-/// its cell and computes for each term t
+/// A pass over pixel p of width factor k per channel (1 unless an albedo or mask scales the profile) takes the level of
+/// its block and computes for each term t
 ///
-///     w_0 = core_gain core(sqrt(core_half_width_px s_p / k))
-///     w_i = length_mm_i rung.footprint s_i falloff(|P_p - P_i| / k) / k + share_i w_i(first term)
+///     w_0 = centre_gain centre(sqrt(centre_half_width_px s_p / k))
+///     w_i = length_mm_i level.px_per_mm s_i falloff(|P_p - P_i| / k) / k + share_i w_i(first term)
 ///     result = sum w_i x_i / sum w_i                      if t is normalised
 ///            = sum_t x_p + g sum w_i (x_i - x_p)          if not, g = 1 / max(1, sum w_i(first term))
 ///
@@ -167,38 +168,38 @@ struct Rung {
 /// columns to the side, held within -32..32, shear rounded to 1/4096. Shear is 0 without depth, with rotated taps, and
 /// without Options::sheared.
 ///
-/// A cell is 16 x 16 pixels, its corner at a multiple of 16. Its rung in a pass is that of the kernel radius
-/// radius_mm * max over its pixels that scatter of F max_c(k_c relative_width_c), where F is the pixel's footprint
-/// along the pass; if that rung is -1 each term is its sum at one point.
+/// A block is 16 x 16 pixels, its corner at a multiple of 16. Its level in a pass is that of the kernel radius
+/// radius_mm * max over its pixels that scatter of F max_c(k_c relative_width_c), where F is the pixel's px_per_mm
+/// along the pass; if that level is -1 each term is its sum at one point.
 ///
-/// On a flat cell the weights are those of the rung: w_i = flat_weights_i, whatever the depth; and its rung in a pass
-/// along x, and the eighth of the rung, is the nearest to the kernel radius radius_mm / |T|, as the surface is seen at
-/// an angle. A cell is flat in a pass if no pixel has a width of its own and no tap is rotated, and if there is no
-/// depth, or the surface within reach is nearly a plane. Reach is 9/8 of the farthest tap, for the radius above, of the
-/// materials that scatter in the cell. Of the pixels with a material in the cells of the same row (column, for the
-/// vertical pass) that lie at least partly within reach, let z be the depths and g, h the differences between the
-/// depths of neighbours of the same material within a cell, in x and in y; with their middles z', g', h' and half
+/// On a flat block the weights are those of the level: w_i = flat_weights_i, whatever the depth; and its level in a
+/// pass along x, and the eighth of the level, is the nearest to the kernel radius radius_mm / |T|, as the surface is
+/// seen at an angle. A block is flat in a pass if no pixel has a width of its own and no tap is rotated, and if there
+/// is no depth, or the surface within reach is nearly a plane. Reach is 9/8 of the farthest tap, for the radius above,
+/// of the materials that scatter in the block. Of the pixels with a material in the blocks of the same row (column, for
+/// the vertical pass) that lie at least partly within reach, let z be the depths and g, h the differences between the
+/// depths of neighbours of the same material within a block, in x and in y; with their middles z', g', h' and half
 /// ranges dz, dg, dh (0 where there is no pair), and x', y' = change of position with depth along the ray through the
-/// middle of the cell,
+/// middle of the block,
 ///
 ///     T  = (size(z') + x' g', y' g', g')                change of position per pixel
 ///     dT = (size(dz) + |x'| dg, |y'| dg, dg)            how much it may vary; size(dz) = dz / focal length
 ///     flat if |dT|^2 <= flatness^2 |T|^2
 ///         and 2 dz <= columns (|g'| + dg) + rows (|h'| + dh) + |T|   no step, columns and rows counting the pixels of
-///                                                       those cells that lie in the frame
+///                                                       those blocks that lie in the frame
 ///
-/// and the same with x and y exchanged. In the vertical pass all pixels of a flat cell share the shear in its middle,
-/// of the z', g' and h' of its own pixels; the cells beside those in the column that the taps reach are looked at too,
+/// and the same with x and y exchanged. In the vertical pass all pixels of a flat block share the shear in its middle,
+/// of the z', g' and h' of its own pixels; the blocks beside those in the column that the taps reach are looked at too,
 /// and T and dT are those along (shear, 1): T + shear times the other T, dT + |shear| times the other dT. A shear that
-/// moves no tap within reach is 0. A cell is smooth in a pass if it is not flat, but would be with `smoothness` in
-/// place of `flatness`. Its rung is the nearest to the same kernel radius, and the weights are, to first order, those
+/// moves no tap within reach is 0. A block is smooth in a pass if it is not flat, but would be with `smoothness` in
+/// place of `flatness`. Its level is the nearest to the same kernel radius, and the weights are, to first order, those
 /// of the true distances along a surface that bends:
 ///
 ///     w_i = flat_weights_i + q stretch_weights_i +- k skew_weights_i
-///     q = rung.footprint^2 |T|^2 - 1,  k = rung.footprint^2 T.T'    both held within -most_stretch..most_stretch and
+///     q = level.px_per_mm^2 |T|^2 - 1,  k = level.px_per_mm^2 T.T'    both held within -most_stretch..most_stretch and
 ///                                                                 -most_skew / last offset..most_skew / last offset
 ///
-/// where T is the pixel's own change of position along the pass, with the cell's shear, and T' that of T, both by
+/// where T is the pixel's own change of position along the pass, with the block's shear, and T' that of T, both by
 /// central differences of depth (of the difference to the only neighbour of the same material if the other one is of
 /// another; 0 if there is none); the mixed second difference is that of the pixels on the diagonal, 0 unless both are
 /// of the material.
@@ -208,10 +209,11 @@ struct Taps {
   double radius_mm = 0;
   /// The same radius of each channel's own marginal, divided by radius_mm: 1 for the widest channel.
   std::array<float, 3> relative_width{};
-  std::vector<Term> terms;  ///< the first is normalised
-  std::vector<Rung> rungs;  ///< see rung_index
+  std::vector<Term> terms;       ///< the first is normalised
+  std::vector<TapLevel> levels;  ///< see level_index
 
-  /// How much of its length the change of position per pixel may vary within reach on a flat cell, and on a smooth one.
+  /// How much of its length the change of position per pixel may vary within reach on a flat block, and on a smooth
+  /// one.
   static constexpr float flatness = 0.1F;
   static constexpr float smoothness = 0.4F;
 
@@ -219,18 +221,18 @@ struct Taps {
   static constexpr float most_stretch = 0.75F;
   static constexpr float most_skew = 0.5F;
 
-  /// Kernel radii of the first and the last rung, px: narrower kernels are left alone, wider ones use the last rung. A
-  /// channel whose own radius on a rung is below the first has no weights there but its centre's.
+  /// Kernel radii of the first and the last level, px: narrower kernels are left alone, wider ones use the last level.
+  /// A channel whose own radius on a level is below the first has no weights there but its centre's.
   static constexpr float min_radius_px = 0.5F;
-  static constexpr int log2_rungs_per_octave = 4;
+  static constexpr int log2_levels_per_octave = 4;
   static constexpr int octaves = 15;
 
-  /// The rung for a kernel radius in px, or -1 if the kernel is narrower than half a pixel.
-  /// Rungs divide each octave in 16 equal steps.
-  static int rung_index(float radius_px);
+  /// The level for a kernel radius in px, or -1 if the kernel is narrower than half a pixel.
+  /// Levels divide each octave in 16 equal steps.
+  static int level_index(float radius_px);
 };
 
-/// The ladder of a design. Throws Error(usage) if the design is out of range.
+/// The level table of a design. Throws Error(usage) if the design is out of range.
 Taps make_taps(const Profile& profile, const TapsDesign& design);
 
 }  // namespace dermis

@@ -1,7 +1,7 @@
 // Functions of the squared distance, tabulated where the exponent and the top mantissa bits of a float change:
 // LinearTable of linear_table.hpp.
-#include "params.h"
 #include "base/vector.h"
+#include "params.h"
 
 #ifndef TABLE_SHIFT
 #error "TABLE_SHIFT: mantissa bits between two nodes"

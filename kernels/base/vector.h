@@ -81,7 +81,7 @@ static inline void store_bytes(global uchar* p, vint value) {
 FORCED_INLINE void store_floats(global float* p, vfloat value) { *(global vfloat*)p = value; }
 
 // How many values a lane can pick from.
-#define PICKED 32
+#define LOOKUP_SIZE 32
 
 #if V == 16 && defined(__AVX512F__)
 typedef float native_floats __attribute__((__vector_size__(64)));
@@ -91,8 +91,8 @@ typedef float native_floats __attribute__((__vector_size__(32)));
 typedef int native_ints __attribute__((__vector_size__(32)));
 #endif
 
-// Of the PICKED floats at p, each lane its own.
-FORCED_INLINE vfloat pick(global const float* p, vint index) {
+// Of the LOOKUP_SIZE floats at p, each lane its own.
+FORCED_INLINE vfloat table_lookup(global const float* p, vint index) {
 #if V == 16 && defined(__AVX512F__)
   const native_floats low = __builtin_astype(load_floats(p), native_floats);
   const native_floats high = __builtin_astype(load_floats(p + V), native_floats);
@@ -109,30 +109,30 @@ FORCED_INLINE vfloat pick(global const float* p, vint index) {
   return select(low, high, (index & 16) != 0);
 #else
   vfloat result;
-#define PICK_LANE(lane) LANE(result, lane) = p[LANE(index, lane)];
-  EACH_LANE(PICK_LANE)
-#undef PICK_LANE
+#define LOOKUP_LANE(lane) LANE(result, lane) = p[LANE(index, lane)];
+  EACH_LANE(LOOKUP_LANE)
+#undef LOOKUP_LANE
   return result;
 #endif
 }
 
 // The same of bytes.
-FORCED_INLINE vint pick_bytes(global const uchar* p, vint index) {
+FORCED_INLINE vint table_lookup_bytes(global const uchar* p, vint index) {
 #if V == 16 && defined(__AVX512F__)
   const native_ints low = __builtin_astype(load_bytes(p), native_ints);
   const native_ints high = __builtin_astype(load_bytes(p + V), native_ints);
   return __builtin_astype(__builtin_ia32_vpermi2vard512(low, __builtin_astype(index, native_ints), high), int16);
 #else
   vint result;
-#define PICK_LANE(lane) LANE(result, lane) = p[LANE(index, lane)];
-  EACH_LANE(PICK_LANE)
-#undef PICK_LANE
+#define LOOKUP_LANE(lane) LANE(result, lane) = p[LANE(index, lane)];
+  EACH_LANE(LOOKUP_LANE)
+#undef LOOKUP_LANE
   return result;
 #endif
 }
 
 // Of whole numbers.
-FORCED_INLINE vint whole(vfloat value) {
+FORCED_INLINE vint convert_vint(vfloat value) {
 #if V == 1
   return (int)value;
 #else
@@ -140,7 +140,7 @@ FORCED_INLINE vint whole(vfloat value) {
 #endif
 }
 
-FORCED_INLINE vfloat as_floats(vint value) {
+FORCED_INLINE vfloat convert_vfloat(vint value) {
 #if V == 1
   return (float)value;
 #else
@@ -211,10 +211,10 @@ FORCED_INLINE int any_bit(vint v) {
 }
 
 // Keeps the lanes where the mask is set, zeroes the others whatever they hold.
-FORCED_INLINE vfloat keep(vint mask, vfloat value) { return as_vfloat(as_vint(value) & mask); }
+FORCED_INLINE vfloat select_or_zero(vint mask, vfloat value) { return as_vfloat(as_vint(value) & mask); }
 
-FORCED_INLINE vrgb keep_rgb(vint mask, vrgb value) {
-  const vrgb kept = {keep(mask, value.r), keep(mask, value.g), keep(mask, value.b)};
+FORCED_INLINE vrgb select_or_zero_rgb(vint mask, vrgb value) {
+  const vrgb kept = {select_or_zero(mask, value.r), select_or_zero(mask, value.g), select_or_zero(mask, value.b)};
   return kept;
 }
 
@@ -239,7 +239,7 @@ FORCED_INLINE vrgb times(vrgb a, vfloat factor) {
   return result;
 }
 
-FORCED_INLINE vrgb fused(vrgb a, vrgb b, vrgb c) {
+FORCED_INLINE vrgb multiply_add(vrgb a, vrgb b, vrgb c) {
   const vrgb result = {fma(a.r, b.r, c.r), fma(a.g, b.g, c.g), fma(a.b, b.b, c.b)};
   return result;
 }
@@ -249,7 +249,7 @@ FORCED_INLINE vrgb sum_rgb(vrgb a, vrgb b) {
   return result;
 }
 
-FORCED_INLINE vrgb same_rgb(vfloat value) {
+FORCED_INLINE vrgb broadcast_rgb(vfloat value) {
   const vrgb result = {value, value, value};
   return result;
 }

@@ -1,7 +1,7 @@
-// fingerprint: which cells of a frame differ from those of the frame before. One work-item has a run of cells.
+// fingerprint: which blocks of a frame differ from those of the frame before. One work-item has a run of blocks.
 #pragma OPENCL FP_CONTRACT OFF
-#include "frame/image.h"
 #include "base/vector.h"
+#include "frame/image.h"
 
 #if V == 1
 typedef uint vuint;
@@ -17,7 +17,7 @@ FORCED_INLINE vuint mixed(vuint state, vfloat value) {
   return state ^ (state >> 15);
 }
 
-// Of one channel of a cell, on top of what came before.
+// Of one channel of a block, on top of what came before.
 SHARED vuint mixed_channel(vuint state, global const uchar* image, const struct ImageParams* p, int width, int x, int y,
                            int height, int channel) {
   for (int i = 0; i < height; ++i) state = mixed(state, read_values(row_of(image, p, width, y + i, channel), x));
@@ -33,7 +33,7 @@ static inline ulong folded(vuint state) {
 }
 
 // `fingerprints` are those of the frame before, none if it is the first, and become those of this one.
-kernel void fingerprint(struct FrameParams f, int cells_per_item,                      //
+kernel void fingerprint(struct FrameParams f, int blocks_per_item,                     //
                         global const uchar* light, struct ImageParams light_at,        //
                         global const uchar* albedo, struct ImageParams albedo_at,      //
                         global const uchar* depth, struct ImageParams depth_at,        //
@@ -41,13 +41,13 @@ kernel void fingerprint(struct FrameParams f, int cells_per_item,               
                         global const uchar* mask, struct ImageParams mask_at,          //
                         global const uchar* matte, struct ImageParams matte_at,        //
                         global ulong* fingerprints, int is_first, global uchar* changed) {
-  const int cell_y = get_global_id(1);
-  const int first = get_global_id(0) * cells_per_item;
-  const int y = cell_y * CELL;
-  const int height = min(CELL, f.height - y);
-  for (int cell_x = first; cell_x < min(first + cells_per_item, f.cells_x); ++cell_x) {
+  const int block_y = get_global_id(1);
+  const int first = get_global_id(0) * blocks_per_item;
+  const int y = block_y * BLOCK;
+  const int height = min(BLOCK, f.height - y);
+  for (int block_x = first; block_x < min(first + blocks_per_item, f.blocks_x); ++block_x) {
     vuint state = (vuint)(1u);
-    for (int x = cell_x * CELL; x < cell_x * CELL + CELL; x += V) {
+    for (int x = block_x * BLOCK; x < block_x * BLOCK + BLOCK; x += V) {
       for (int c = 0; c < 3; ++c) state = mixed_channel(state, light, &light_at, f.width, x, y, height, c);
 #if HAS_ALBEDO
       for (int c = 0; c < 3; ++c) state = mixed_channel(state, albedo, &albedo_at, f.width, x, y, height, c);
@@ -65,9 +65,9 @@ kernel void fingerprint(struct FrameParams f, int cells_per_item,               
       state = mixed_channel(state, matte, &matte_at, f.width, x, y, height, 0);
 #endif
     }
-    const size_t cell = (size_t)cell_y * f.cells_x + cell_x;
+    const size_t block = (size_t)block_y * f.blocks_x + block_x;
     const ulong now = folded(state);
-    changed[cell] = is_first || fingerprints[cell] != now;
-    fingerprints[cell] = now;
+    changed[block] = is_first || fingerprints[block] != now;
+    fingerprints[block] = now;
   }
 }

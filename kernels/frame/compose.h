@@ -21,7 +21,7 @@ static inline vrgb blended(vrgb before, vrgb after, vfloat share) {
 SHARED void compose(const struct FrameParams* f, const Inputs* in, const InputRows* rows, const Outputs* out,
                     vrgb after, int all_finite, int x, int y) {
   const vint inside = AS_MASK(x + int_lane_numbers() < (vint)(f->width));
-  const vint m = load_bytes(rows->surface + x);
+  const vint m = load_bytes(rows->material_ids + x);
   if (!HAS_MATTE && all_finite && !out->writes_result && !any_bit(AS_MASK(m == 0) | AS_MASK((m & NARROW_BIT) != 0))) {
     if (out->writes_scattered) write_rgb(out->scattered, &out->scattered_at, x, y, after, inside);
     return;
@@ -56,7 +56,7 @@ SHARED void compose(const struct FrameParams* f, const Inputs* in, const InputRo
       }
       write_rgb(out->result, &out->result_at, x, y, sum_rgb(beauty, change), inside & touched);
     }
-    if (any_bit(zeroed)) write_rgb(out->result, &out->result_at, x, y, same_rgb((vfloat)(0.0f)), zeroed);
+    if (any_bit(zeroed)) write_rgb(out->result, &out->result_at, x, y, broadcast_rgb((vfloat)(0.0f)), zeroed);
   }
   if (out->writes_scattered) {
     vint written = inside;
@@ -68,6 +68,7 @@ SHARED void compose(const struct FrameParams* f, const Inputs* in, const InputRo
       written &= ~kept;
     }
 #endif
-    write_rgb(out->scattered, &out->scattered_at, x, y, keep_rgb(~zeroed, select_rgb(before, after, touched)), written);
+    write_rgb(out->scattered, &out->scattered_at, x, y, select_or_zero_rgb(~zeroed, select_rgb(before, after, touched)),
+              written);
   }
 }

@@ -1,6 +1,6 @@
 // The caller's images: any format, any strides.
-#include "params.h"
 #include "base/vector.h"
+#include "params.h"
 
 static inline Bytes byte_at(const struct ImageParams* p, int x, int y, int channel) {
   return p->offset + y * p->row_stride + (Bytes)x * p->pixel_stride + channel * p->channel_stride;

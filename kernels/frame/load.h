@@ -1,14 +1,14 @@
 // The caller's images into a window.
+#include "frame/coverage.h"
 #include "frame/image.h"
 #include "frame/light.h"
-#include "frame/shape.h"
 #include "frame/window.h"
 
 // The images that are read.
 typedef struct {
   global const uchar *light, *albedo, *depth, *mask, *matte;
   struct ImageParams light_at, albedo_at, depth_at, mask_at, matte_at;
-  global const uchar* surface;  // what survey wrote
+  global const uchar* material_ids;  // what survey wrote
 } Inputs;
 
 static inline vint finite_lanes(vrgb v) {
@@ -23,7 +23,7 @@ static inline size_t surface_at(const struct FrameParams* f, int x, int y) {
 typedef struct {
   RgbRow light, albedo;
   Row depth, mask, matte;
-  global const uchar* surface;
+  global const uchar* material_ids;
 } InputRows;
 
 static inline InputRows input_rows(const struct FrameParams* f, const Inputs* in, int y) {
@@ -41,7 +41,7 @@ static inline InputRows input_rows(const struct FrameParams* f, const Inputs* in
 #if HAS_MATTE
   rows.matte = row_of(in->matte, &in->matte_at, f->width, y, 0);
 #endif
-  rows.surface = in->surface + (size_t)y * f->stride + PADDING;
+  rows.material_ids = in->material_ids + (size_t)y * f->stride + PADDING;
   return rows;
 }
 
@@ -49,7 +49,7 @@ FORCED_INLINE vrgb read_albedo(const InputRows* rows, int x) {
 #if HAS_ALBEDO
   return read_rgb(&rows->albedo, x);
 #else
-  return same_rgb((vfloat)(1.0f));
+  return broadcast_rgb((vfloat)(1.0f));
 #endif
 }
 
@@ -69,20 +69,20 @@ FORCED_INLINE vint is_finite(vrgb v) {
 }
 
 // The lanes that have a material but no light.
-FORCED_INLINE vint bad_lanes(vint surface, vrgb input, vrgb albedo, vrgb value) {
+FORCED_INLINE vint bad_lanes(vint material_ids, vrgb input, vrgb albedo, vrgb value) {
   vint good = is_finite(input);
 #if HAS_ALBEDO
   good &= is_finite(albedo) & is_finite(value);
 #endif
-  return AS_MASK(surface != 0) & ~good;
+  return AS_MASK(material_ids != 0) & ~good;
 }
 
 // Material of V pixels; their depth and width.
 FORCED_INLINE void load_surface(const Window* w, const struct FrameParams* f, const InputRows* rows,
                                 global const struct MaterialParams* materials, int x, int y) {
   const size_t at = pixel_at(w, x, y);
-  const vint m = load_bytes(rows->surface + x);
-  store_bytes(w->surface + at, m);
+  const vint m = load_bytes(rows->material_ids + x);
+  store_bytes(w->material_ids + at, m);
 #if HAS_DEPTH
   const vfloat z = read_values(rows->depth, x) * f->mm_per_unit;
   store_floats(w->depth + at, select((vfloat)(1.0f), z, AS_MASK(m != 0)));
@@ -95,7 +95,7 @@ FORCED_INLINE void load_surface(const Window* w, const struct FrameParams* f, co
   mask = read_values(rows->mask, x);
 #endif
   const vrgb albedo = read_albedo(rows, x);
-  vrgb k = same_rgb((vfloat)(1.0f));
+  vrgb k = broadcast_rgb((vfloat)(1.0f));
   for (int i = 0; i < MATERIALS; ++i) {
     k = select_rgb(k, width_factor(materials + i, albedo, mask), AS_MASK((m & MATERIAL_MASK) == i + 1));
   }
@@ -114,15 +114,15 @@ typedef struct {
 FORCED_INLINE LoadedLight load_light(const Window* w, const struct FrameParams* f, const InputRows* rows, int x,
                                      int y) {
   const size_t at = pixel_at(w, x, y);
-  const vint m = load_bytes(rows->surface + x);
-  LoadedLight loaded = {same_rgb((vfloat)(0.0f)), m, (vint)(0)};
+  const vint m = load_bytes(rows->material_ids + x);
+  LoadedLight loaded = {broadcast_rgb((vfloat)(0.0f)), m, (vint)(0)};
   if (any_bit(m)) {
     const vrgb input = read_rgb(&rows->light, x);
     const vrgb albedo = read_albedo(rows, x);
     const vrgb value = scattering_light(f, input, albedo);
     loaded.bad = bad_lanes(m, input, albedo, value);
     loaded.material = m & ~loaded.bad;
-    loaded.light = keep_rgb(AS_MASK(loaded.material != 0), value);
+    loaded.light = select_or_zero_rgb(AS_MASK(loaded.material != 0), value);
   }
   store_rgb(w->light, w->plane, at, loaded.light);
   store_bytes(w->material + at, loaded.material);
@@ -136,6 +136,6 @@ static inline vrgb width_reciprocal(const Window* w, size_t at) {
   const vrgb reciprocal = {1.0f / k.r, 1.0f / k.g, 1.0f / k.b};
   return reciprocal;
 #else
-  return same_rgb((vfloat)(1.0f));
+  return broadcast_rgb((vfloat)(1.0f));
 #endif
 }

@@ -4,12 +4,12 @@
 
 // From PADDING before the frame to PADDING after it.
 kernel void prepare(struct FrameParams f, struct WindowParams window, global const struct MaterialParams* materials,
-                    global const uchar* surface, global const uchar* light, struct ImageParams light_at,
+                    global const uchar* material_ids, global const uchar* light, struct ImageParams light_at,
                     global const uchar* albedo, struct ImageParams albedo_at, global const uchar* depth,
                     struct ImageParams depth_at, global const uchar* mask, struct ImageParams mask_at,
                     global const uchar* matte, struct ImageParams matte_at, global uchar* memory, long plane,
                     int columns, global int* counters) {
-  const Inputs in = {light, albedo, depth, mask, matte, light_at, albedo_at, depth_at, mask_at, matte_at, surface};
+  const Inputs in = {light, albedo, depth, mask, matte, light_at, albedo_at, depth_at, mask_at, matte_at, material_ids};
   const Window w = window_in(window, plane, 1, memory);
   const int y = get_global_id(1);
   const int x_begin = (int)get_global_id(0) * columns - PADDING;

@@ -1,7 +1,7 @@
 // The vertical pass runs along (shear, 1), so that on the surface it crosses the horizontal one at a right angle: Taps
 // in taps.hpp. Turned taps do not.
-#include "params.h"
 #include "base/vector.h"
+#include "params.h"
 
 #ifndef SHEARED
 #error "SHEARED"

@@ -1,6 +1,6 @@
 // The visible surface: where the points of pixels lie, mm.
-#include "params.h"
 #include "base/vector.h"
+#include "params.h"
 
 // V pixels of a row.
 typedef struct {

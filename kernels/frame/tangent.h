@@ -10,15 +10,16 @@ static inline vfloat depth_slope(const struct FrameParams* f, const Window* w, i
   const size_t before = y - dy < 0 ? at : pixel_at(w, x - dx, y - dy);
   const size_t after = y + dy >= f->height ? at : pixel_at(w, x + dx, y + dy);
   const vfloat z = load_floats(w->depth + at);
-  const vint m = load_bytes(w->surface + at) & MATERIAL_MASK;
-  const vint has_before = AS_MASK((load_bytes(w->surface + before) & MATERIAL_MASK) == m) & (vint)(-(before != at));
-  const vint has_after = AS_MASK((load_bytes(w->surface + after) & MATERIAL_MASK) == m) & (vint)(-(after != at));
-  const vfloat to_before = keep(has_before, z - load_floats(w->depth + before));
-  const vfloat to_after = keep(has_after, load_floats(w->depth + after) - z);
+  const vint m = load_bytes(w->material_ids + at) & MATERIAL_MASK;
+  const vint has_before =
+      AS_MASK((load_bytes(w->material_ids + before) & MATERIAL_MASK) == m) & (vint)(-(before != at));
+  const vint has_after = AS_MASK((load_bytes(w->material_ids + after) & MATERIAL_MASK) == m) & (vint)(-(after != at));
+  const vfloat to_before = select_or_zero(has_before, z - load_floats(w->depth + before));
+  const vfloat to_after = select_or_zero(has_after, load_floats(w->depth + after) - z);
   const vfloat backward = select(to_after, to_before, has_before);
   const vfloat forward = select(to_before, to_after, has_after);
   const vfloat smaller = select(forward, backward, AS_MASK(fabs(backward) <= fabs(forward)));
-  return keep(AS_MASK(backward * forward > 0.0f), smaller);
+  return select_or_zero(AS_MASK(backward * forward > 0.0f), smaller);
 }
 
 // Change of position with one pixel along x, and along y.
@@ -51,7 +52,7 @@ static inline vfloat patch_area(Tangent x, Tangent y) {
 static inline vfloat shear_of(Tangent x, Tangent y) {
   const vfloat shear = -fma(x.x, y.x, fma(x.y, y.y, x.z * y.z)) / squared_length(x);
   // Not a number where lengths underflow.
-  return keep(AS_MASK(fabs(shear) < INFINITY), clamp(shear, (vfloat)(-1.0f), (vfloat)(1.0f)));
+  return select_or_zero(AS_MASK(fabs(shear) < INFINITY), clamp(shear, (vfloat)(-1.0f), (vfloat)(1.0f)));
 }
 
 // In columns per row, times 4096.

@@ -1,7 +1,7 @@
 // A window: part of a frame as planes. On CPUs it is a tile with its surroundings, which stays in the cache of a core;
 // on GPUs, and for the exact integral, the whole frame.
-#include "params.h"
 #include "base/vector.h"
+#include "params.h"
 
 // 1: a window is what one tile needs; 0: it is the frame.
 #ifndef TILED
@@ -14,14 +14,14 @@ typedef struct {
   int x_begin, x_end;  // px; planes begin PADDING earlier and end PADDING later
   int y_begin, y_end;
   int row_mask;
-  int row_stride;          // elements
-  size_t plane;            // elements
-  global float* light;     // 3 planes for each image
-  global float* segment;   // length of surface that a pixel spans along the pass, mm
-  global float* depth;     // mm
-  global float* width;     // factor of the profile's width, 3 planes; there if PIXEL_WIDTH
-  global uchar* material;  // 0 where the light is not finite
-  global uchar* surface;   // the material whatever the light
+  int row_stride;              // elements
+  size_t plane;                // elements
+  global float* light;         // 3 planes for each image
+  global float* segment;       // length of surface that a pixel spans along the pass, mm
+  global float* depth;         // mm
+  global float* width;         // factor of the profile's width, 3 planes; there if PIXEL_WIDTH
+  global uchar* material;      // 0 where the light is not finite
+  global uchar* material_ids;  // the material whatever the light
 } Window;
 
 // Bytes of a window of so many images with planes of that size.
@@ -36,7 +36,7 @@ static inline Window window_in(struct WindowParams p, size_t plane, int images, 
   w.depth = w.segment + plane;
   w.width = w.depth + plane;
   w.material = (global uchar*)(w.width + (PIXEL_WIDTH ? 3 * plane : 0));
-  w.surface = w.material + plane;
+  w.material_ids = w.material + plane;
   return w;
 }
 

@@ -4,9 +4,9 @@
 // is the light that stays on the pixel, where no sample reads.
 #pragma OPENCL FP_CONTRACT OFF
 #include "base/linear_table.h"
+#include "base/rotation.h"
 #include "frame/load.h"
 #include "integral/own_share.h"
-#include "base/rotation.h"
 
 #if V != 1
 #error "V: samples of a pixel lie anywhere, so that it is alone"
@@ -92,7 +92,7 @@ SHARED int read_level(Reading* reading, const Pixel* pixel, int level, float sha
   const float right = clamp(fma(u - column - 0.5f, sharpness, 0.5f), 0.0f, 1.0f);
   const float below = clamp(fma(v - row - 0.5f, sharpness, 0.5f), 0.0f, 1.0f);
   global const struct TexelParams* texels = pixel->texels + pixel->levels->first[level];
-  const Reading nothing = {same_rgb(0.0f), 0.0f, 0.0f, 0.0f};
+  const Reading nothing = {broadcast_rgb(0.0f), 0.0f, 0.0f, 0.0f};
   *reading = nothing;
   for (int j = 0; j < 2; ++j) {
     for (int i = 0; i < 2; ++i) {
@@ -171,7 +171,7 @@ static inline void add_samples(Sum* sum, const Pixel* pixel, global const struct
     const vrgb density = product(look_up_linear_scaled(tables, radial, r_squared, reciprocal), per_area);
     const vrgb weight = times(density, spacing_px * spacing_px);
     sum->weight = sum_rgb(sum->weight, times(weight, reading.area));
-    sum->light = fused(weight, reading.light, sum->light);
+    sum->light = multiply_add(weight, reading.light, sum->light);
   }
 }
 
@@ -184,7 +184,7 @@ static inline vrgb gather(const Pixel* pixel, global const struct DiscParams* it
   while (start + 1 < DISC_STARTS && d.inner_mm >= width * its->inner_mm[which][start + 1]) ++start;
   const int count = counts->samples[which];
   global const struct SampleParams* set = samples + its->first_sample[which] + start * count;
-  vrgb mean = same_rgb(0.0f);
+  vrgb mean = broadcast_rgb(0.0f);
   for (int i = 0; i < counts->seeds; ++i) {
     const float2 turn = turns[rotation_index(pixel->x, pixel->y, counts->seed + i)];
     Sum sum = {product(own, own_light), own};
@@ -217,8 +217,8 @@ static inline Disc disc_at(const struct FrameParams* f, const Points* p, float s
   }
 #endif
   const float steep = sqrt(fma(steep_x, steep_x, steep_y * steep_y));
-  const float held = steep > STEEPEST ? STEEPEST / steep : 1.0f;
-  return disc_of(tangent_x(f, p, held * steep_x * size_x), tangent_y(f, p, held * steep_y * size_y));
+  const float deferred = steep > STEEPEST ? STEEPEST / steep : 1.0f;
+  return disc_of(tangent_x(f, p, deferred * steep_x * size_x), tangent_y(f, p, deferred * steep_y * size_y));
 #else
   const Tangent across = {size_x, 0.0f, 0.0f};
   const Tangent down = {0.0f, size_y, 0.0f};
@@ -232,12 +232,12 @@ kernel void disc(struct FrameParams f, struct WindowParams window, int first_row
                  global const struct DiscParams* discs, global const struct SampleParams* samples,
                  struct DiscCounts counts, global const float2* turns, global uchar* memory, long plane,
                  struct TexelLevels levels, global const struct TexelParams* texels, global const uchar* lit,
-                 global const uchar* normal, struct ImageParams normal_at, int columns, global float* held,
+                 global const uchar* normal, struct ImageParams normal_at, int columns, global float* deferred,
                  global volatile int* counters) {
   const Window w = window_in(window, plane, 1, memory);
   const int y = first_row + get_global_id(1);
   const int x_begin = get_global_id(0) * columns;
-  global const uchar* dark = lit + f.cells_x * f.cells_y + y / CELL * f.cells_x;
+  global const uchar* dark = lit + f.blocks_x * f.blocks_y + y / BLOCK * f.blocks_x;
   const RgbRow normals = rgb_row_of(normal, &normal_at, f.width, y);
   int unlit = 0;
   for (int x = x_begin; x < min(x_begin + columns, f.width); ++x) {
@@ -246,7 +246,7 @@ kernel void disc(struct FrameParams f, struct WindowParams window, int first_row
     const vrgb own_light = load_rgb(w.light, w.plane, at);
     vrgb result = own_light;
     if (m != 0 && (m & NARROW_BIT) == 0) {
-      if (dark[x / CELL]) {
+      if (dark[x / BLOCK]) {
         ++unlit;
       } else {
         global const struct MaterialParams* its = materials + m - 1;
@@ -268,7 +268,7 @@ kernel void disc(struct FrameParams f, struct WindowParams window, int first_row
                 ? 1.0f
                 : clamp((its->radius_mm * width / finest_mm - FEW_RADIUS_PX) / (ALL_RADIUS_PX - FEW_RADIUS_PX), 0.0f,
                         1.0f);
-        result = same_rgb(0.0f);
+        result = broadcast_rgb(0.0f);
         for (int which = 0; which < 2; ++which) {
           const float part = which == 0 ? 1.0f - share : share;
           if (part == 0.0f) continue;
@@ -278,7 +278,7 @@ kernel void disc(struct FrameParams f, struct WindowParams window, int first_row
         }
       }
     }
-    store_rgb(held, (size_t)f.stride * f.height, surface_at(&f, x, y), result);
+    store_rgb(deferred, (size_t)f.stride * f.height, surface_at(&f, x, y), result);
   }
   if (unlit > 0) atomic_add(counters + COUNTER_UNLIT, unlit);
 }

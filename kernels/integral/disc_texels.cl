@@ -1,4 +1,4 @@
-// texels, halve_texels, light_cells, dark_cells: what samples of a disc read, as pixels and as blocks of them, and
+// texels, halve_texels, light_blocks, dark_blocks: what samples of a disc read, as pixels and as blocks of them, and
 // where there is no light for them to find.
 #pragma OPENCL FP_CONTRACT OFF
 #include "frame/load.h"
@@ -76,48 +76,48 @@ kernel void halve_texels(struct FrameParams f, struct TexelLevels levels, int le
   }
 }
 
-// Whether a pixel of a cell gives light. A work-item has a cell.
-kernel void light_cells(struct FrameParams f, global const struct TexelParams* texels, global uchar* lit) {
-  const int cell_x = get_global_id(0);
-  const int cell_y = get_global_id(1);
+// Whether a pixel of a block gives light. A work-item has a block.
+kernel void light_blocks(struct FrameParams f, global const struct TexelParams* texels, global uchar* lit) {
+  const int block_x = get_global_id(0);
+  const int block_y = get_global_id(1);
   int any = 0;
-  for (int y = cell_y * CELL; y < min(cell_y * CELL + CELL, f.height); ++y) {
-    for (int x = cell_x * CELL; x < min(cell_x * CELL + CELL, f.width); ++x) {
+  for (int y = block_y * BLOCK; y < min(block_y * BLOCK + BLOCK, f.height); ++y) {
+    for (int x = block_x * BLOCK; x < min(block_x * BLOCK + BLOCK, f.width); ++x) {
       global const struct TexelParams* texel = texels + (size_t)y * f.width + x;
       any |= texel->material != 0 && (texel->light[0] != 0.0f || texel->light[1] != 0.0f || texel->light[2] != 0.0f);
     }
   }
-  lit[cell_y * f.cells_x + cell_x] = any;
+  lit[block_y * f.blocks_x + block_x] = any;
 }
 
-// Pixels along an axis that a disc of a cell may reach: rays that are `apart` pixels from each other are as far apart
+// Pixels along an axis that a disc of a block may reach: rays that are `apart` pixels from each other are as far apart
 // on any surface as that times the size of a pixel, over the length of the ray per depth.
-static inline int reach_px(float reach_mm, float footprint, float ray_length, int most) {
-  return (int)fmin(fma(reach_mm * footprint, ray_length, 2.0f), (float)most);
+static inline int reach_px(float reach_mm, float px_per_mm, float ray_length, int most) {
+  return (int)fmin(fma(reach_mm * px_per_mm, ray_length, 2.0f), (float)most);
 }
 
-// Whether no pixel within reach of a cell gives light: behind what light_cells wrote of all cells.
-kernel void dark_cells(struct FrameParams f, global const struct DiscParams* discs,
-                       global const struct CellParams* cells, global uchar* lit) {
-  const int cell_x = get_global_id(0);
-  const int cell_y = get_global_id(1);
-  global const struct CellParams* cell = cells + cell_y * f.cells_x + cell_x;
+// Whether no pixel within reach of a block gives light: behind what light_blocks wrote of all blocks.
+kernel void dark_blocks(struct FrameParams f, global const struct DiscParams* discs,
+                        global const struct BlockParams* blocks, global uchar* lit) {
+  const int block_x = get_global_id(0);
+  const int block_y = get_global_id(1);
+  global const struct BlockParams* block = blocks + block_y * f.blocks_x + block_x;
   float reach_mm = 0.0f;
   for (int m = 0; m < MATERIALS; ++m) {
-    if (cell->scattering[m / 32] >> (m % 32) & 1) reach_mm = fmax(reach_mm, discs[m].reach_mm);
+    if (block->scattering[m / 32] >> (m % 32) & 1) reach_mm = fmax(reach_mm, discs[m].reach_mm);
   }
-  const float from_center_x = fmax(fabs(cell_x * CELL - f.center_x), fabs(cell_x * CELL + CELL - f.center_x));
-  const float from_center_y = fmax(fabs(cell_y * CELL - f.center_y), fabs(cell_y * CELL + CELL - f.center_y));
+  const float from_center_x = fmax(fabs(block_x * BLOCK - f.center_x), fabs(block_x * BLOCK + BLOCK - f.center_x));
+  const float from_center_y = fmax(fabs(block_y * BLOCK - f.center_y), fabs(block_y * BLOCK + BLOCK - f.center_y));
   const float ray_x = f.slope_x * from_center_x;
   const float ray_y = f.slope_y * from_center_y;
   const float ray_length = sqrt(fma(ray_x, ray_x, fma(ray_y, ray_y, 1.0f)));
-  const int x_px = reach_px(reach_mm, cell->finest_x, ray_length, f.width);
-  const int y_px = reach_px(reach_mm, cell->finest_y, ray_length, f.height);
-  const int x_end = min(cell_x * CELL + CELL - 1 + x_px, f.width - 1) / CELL;
-  const int y_end = min(cell_y * CELL + CELL - 1 + y_px, f.height - 1) / CELL;
+  const int x_px = reach_px(reach_mm, block->finest_x, ray_length, f.width);
+  const int y_px = reach_px(reach_mm, block->finest_y, ray_length, f.height);
+  const int x_end = min(block_x * BLOCK + BLOCK - 1 + x_px, f.width - 1) / BLOCK;
+  const int y_end = min(block_y * BLOCK + BLOCK - 1 + y_px, f.height - 1) / BLOCK;
   int any = 0;
-  for (int y = max(cell_y * CELL - y_px, 0) / CELL; y <= y_end; ++y) {
-    for (int x = max(cell_x * CELL - x_px, 0) / CELL; x <= x_end; ++x) any |= lit[y * f.cells_x + x];
+  for (int y = max(block_y * BLOCK - y_px, 0) / BLOCK; y <= y_end; ++y) {
+    for (int x = max(block_x * BLOCK - x_px, 0) / BLOCK; x <= x_end; ++x) any |= lit[y * f.blocks_x + x];
   }
-  lit[f.cells_x * f.cells_y + cell_y * f.cells_x + cell_x] = !any;
+  lit[f.blocks_x * f.blocks_y + block_y * f.blocks_x + block_x] = !any;
 }

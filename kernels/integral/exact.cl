@@ -3,8 +3,8 @@
 #pragma OPENCL FP_CONTRACT OFF
 #include "base/linear_table.h"
 #include "frame/load.h"
-#include "integral/own_share.h"
 #include "frame/tangent.h"
+#include "integral/own_share.h"
 
 // Gauss-Legendre points and weights on [-1/2, 1/2].
 constant float points_2[2] = {-0.288675135f, 0.288675135f};
@@ -96,7 +96,7 @@ static inline vrgb integrate(const Window* w, const struct FrameParams* f, const
   const int2 extent = reach(f, p, mine, its->reach_mm * widest);
   for (int dy = max(-extent.y, -y); dy <= min(extent.y, f->height - 1 - y); ++dy) {
     // A sum per row first: tens of thousands of terms in one float would lose digits.
-    const vrgb zero = same_rgb((vfloat)(0.0f));
+    const vrgb zero = broadcast_rgb((vfloat)(0.0f));
     Sum row = {zero, zero};
     for (int dx = max(-extent.x, 1 - V - x); dx <= min(extent.x, f->width - 1 - x); ++dx) {
       if (dx == 0 && dy == 0) continue;
@@ -108,9 +108,9 @@ static inline vrgb integrate(const Window* w, const struct FrameParams* f, const
       const vrgb average = patch_average(f, p, tables, its->radial, reciprocal, dx, dy, load_floats(w->depth + at),
                                          load_floats(geometry + at), load_floats(geometry + w->plane + at), n);
       const vrgb density = product(average, product(reciprocal, reciprocal));
-      const vrgb weight = keep_rgb(same, times(density, load_floats(geometry + 2 * w->plane + at)));
+      const vrgb weight = select_or_zero_rgb(same, times(density, load_floats(geometry + 2 * w->plane + at)));
       row.weight = sum_rgb(row.weight, weight);
-      row.light = fused(weight, keep_rgb(same, load_rgb(w->light, w->plane, at)), row.light);
+      row.light = multiply_add(weight, select_or_zero_rgb(same, load_rgb(w->light, w->plane, at)), row.light);
     }
     sum.weight = sum_rgb(sum.weight, row.weight);
     sum.light = sum_rgb(sum.light, row.light);
@@ -121,7 +121,7 @@ static inline vrgb integrate(const Window* w, const struct FrameParams* f, const
 
 kernel void exact(struct FrameParams f, struct WindowParams window, int first_row,
                   global const struct MaterialParams* materials, global const float4* tables, global uchar* memory,
-                  long plane, global const float* geometry, int columns, global float* held) {
+                  long plane, global const float* geometry, int columns, global float* deferred) {
   const Window w = window_in(window, plane, 1, memory);
   const int y = first_row + get_global_id(1);
   const int x_begin = get_global_id(0) * columns;
@@ -137,6 +137,6 @@ kernel void exact(struct FrameParams f, struct WindowParams window, int first_ro
       result = select_rgb(result, integrate(&w, &f, &p, mine, i + 1, materials + i, tables, geometry, reciprocal, x, y),
                           mine);
     }
-    store_rgb(held, (size_t)f.stride * f.height, surface_at(&f, x, y), result);
+    store_rgb(deferred, (size_t)f.stride * f.height, surface_at(&f, x, y), result);
   }
 }

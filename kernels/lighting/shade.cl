@@ -46,15 +46,15 @@ kernel void shade(int width, global const uchar* position, struct ImageParams po
   const float3 n = its_normal / length;
   const Highlight h = {tables, beckmann, reflected, reflectance};
   const float facing_viewer = dot_of(n, to_viewer);
-  vrgb diffuse = same_rgb(0.0f);
-  vrgb shine = same_rgb(0.0f);
+  vrgb diffuse = broadcast_rgb(0.0f);
+  vrgb shine = broadcast_rgb(0.0f);
   for (int i = 0; i < light_count; ++i) {
     const Incident in = incident_at(lights + i, point);
     const float facing = dot_of(n, in.towards);
     if (!(facing > 0.0f) || in.strength == 0.0f) continue;
     const float strength =
         in.strength * facing * visible(lights + i, maps, softness, point + offset * texel_at(lights + i, point) * n);
-    const vrgb white = same_rgb(1.0f);
+    const vrgb white = broadcast_rgb(1.0f);
     const vrgb its = scaled(lights[i].colour, white);
     diffuse = sum_rgb(diffuse, times(its, strength * (1.0f - reflected_at(&h, facing))));
     if (facing_viewer > 0.0f) shine = sum_rgb(shine, times(its, strength * highlight(&h, n, in.towards, to_viewer)));

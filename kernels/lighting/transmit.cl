@@ -1,8 +1,8 @@
 // transmit: adds the light that comes through a surface from behind, Translucency of translucency.hpp (Jimenez et al.
 // 2010, figure 7).
-#include "lighting/lights.h"
 #include "base/linear_table.h"
-#include "frame/shape.h"
+#include "frame/coverage.h"
+#include "lighting/lights.h"
 
 // 1: the light has the albedo in it.
 #ifndef LIT
@@ -25,7 +25,7 @@ static inline int material_at(global const struct SlabParams* slabs, global cons
 
 // One over the factor of the profile's width; infinite where the mask is 0.
 static inline vrgb width_reciprocal(global const struct SlabParams* slab, vrgb albedo, float mask) {
-  vrgb k = same_rgb(fmin(mask, 1.0f));
+  vrgb k = broadcast_rgb(fmin(mask, 1.0f));
 #if HAS_ALBEDO
   if (slab->width_follows_albedo) {
     k.r /= shape_factor(albedo.r);
@@ -54,10 +54,10 @@ static inline vrgb through(const Slab* s, float thickness_mm) {
 // What comes through of one light, averaged over the square of its map.
 static vrgb transmittance(const Slab* s, global const struct LightParams* light, float3 point, float3 shrunk) {
   const MapPlace place = place_on_map(light, shrunk, point);
-  if (!place.is_known) return s->thickness < 0.0f ? same_rgb(0.0f) : through(s, s->thickness);
+  if (!place.is_known) return s->thickness < 0.0f ? broadcast_rgb(0.0f) : through(s, s->thickness);
   const Texels columns = texels_about(place.x, s->softness, light->map_width);
   const Texels rows = texels_about(place.y, s->softness, light->map_height);
-  vrgb sum = same_rgb(0.0f);
+  vrgb sum = broadcast_rgb(0.0f);
   float area = 0.0f;
   for (int y = rows.first; y <= rows.last; ++y) {
     for (int x = columns.first; x <= columns.last; ++x) {
@@ -84,8 +84,8 @@ kernel void transmit(int width, global const uchar* light, struct ImageParams li
                      float thickness_scale, float shrink, float softness, int writes_lit, int writes_result) {
   const int x = get_global_id(0);
   const int y = get_global_id(1);
-  vrgb more = same_rgb(0.0f);
-  vrgb colour = same_rgb(1.0f);
+  vrgb more = broadcast_rgb(0.0f);
+  vrgb colour = broadcast_rgb(1.0f);
   const int m = material_at(slabs, material, &its_material_at, width, x, y);
   const RgbRow light_row = rgb_row_of(light, &light_at, width, y);
   const vrgb before = read_rgb(&light_row, x);

@@ -1,4 +1,4 @@
-// How a smooth surface differs from the plane of a rung: q and k of Taps in taps.hpp.
+// How a smooth surface differs from the plane of a level: q and k of Taps in taps.hpp.
 #include "frame/tangent.h"
 
 typedef struct {
@@ -29,11 +29,12 @@ FORCED_INLINE DepthChange depth_change(const struct FrameParams* f, const Window
   vfloat backward = z - load_floats(w->depth + before);
   vfloat forward = load_floats(w->depth + after) - z;
   if (!clean) {
-    const vint m = load_bytes(w->surface + at) & MATERIAL_MASK;
-    const vint has_before = AS_MASK((load_bytes(w->surface + before) & MATERIAL_MASK) == m) & (vint)(-has_row_before);
-    const vint has_after = AS_MASK((load_bytes(w->surface + after) & MATERIAL_MASK) == m) & (vint)(-has_row_after);
-    const vfloat from_before = keep(has_before, backward);
-    const vfloat to_after = keep(has_after, forward);
+    const vint m = load_bytes(w->material_ids + at) & MATERIAL_MASK;
+    const vint has_before =
+        AS_MASK((load_bytes(w->material_ids + before) & MATERIAL_MASK) == m) & (vint)(-has_row_before);
+    const vint has_after = AS_MASK((load_bytes(w->material_ids + after) & MATERIAL_MASK) == m) & (vint)(-has_row_after);
+    const vfloat from_before = select_or_zero(has_before, backward);
+    const vfloat to_after = select_or_zero(has_after, forward);
     backward = select(to_after, from_before, has_before);
     forward = select(from_before, to_after, has_after);
   }
@@ -53,21 +54,21 @@ FORCED_INLINE vfloat cross_change(const struct FrameParams* f, const Window* w, 
   const vfloat diagonal = (load_floats(w->depth + after) - z) - (z - load_floats(w->depth + before));
   const vfloat cross = 0.5f * (diagonal - along_x.change - along_y.change);
   if (clean) return cross;
-  const vint m = load_bytes(w->surface + at) & MATERIAL_MASK;
-  return keep(AS_MASK((load_bytes(w->surface + before) & MATERIAL_MASK) == m) &
-                  AS_MASK((load_bytes(w->surface + after) & MATERIAL_MASK) == m) & (vint)(-has_rows),
-              cross);
+  const vint m = load_bytes(w->material_ids + at) & MATERIAL_MASK;
+  return select_or_zero(AS_MASK((load_bytes(w->material_ids + before) & MATERIAL_MASK) == m) &
+                            AS_MASK((load_bytes(w->material_ids + after) & MATERIAL_MASK) == m) & (vint)(-has_rows),
+                        cross);
 }
 
 // Along a pass of that shear, which is 0 for the horizontal one.
-FORCED_INLINE Bend bend_at(const struct FrameParams* f, const Window* w, global const struct RungParams* rung, int x,
-                           int y, int axis, int shear, const int clean) {
+FORCED_INLINE Bend bend_at(const struct FrameParams* f, const Window* w, global const struct TapLevelParams* level,
+                           int x, int y, int axis, int shear, const int clean) {
   const Points p = points_at(f, load_floats(w->depth + pixel_at(w, x, y)), x, y);
   DepthChange depth = depth_change(f, w, x, y, axis, clean);
   const float along_slope = axis == 0 ? f->slope_x : f->slope_y;
-  const float across_slope = axis == 0 ? f->slope_y : f->slope_x;
+  const float horizontal_slope = axis == 0 ? f->slope_y : f->slope_x;
   const vfloat ray_along = axis == 0 ? p.x_per_z : p.y_per_z;
-  const vfloat ray_across = axis == 0 ? p.y_per_z : p.x_per_z;
+  const vfloat ray_horizontal = axis == 0 ? p.y_per_z : p.x_per_z;
   float side = 0.0f;  // columns per row
   if (axis == 1 && shear != 0) {
     side = shear / 4096.0f;
@@ -77,16 +78,17 @@ FORCED_INLINE Bend bend_at(const struct FrameParams* f, const Window* w, global 
     depth.change = fma((vfloat)(side), fma((vfloat)(side), along_x.change, 2.0f * cross), depth.change);
   }
   const vfloat size = fma(p.z, (vfloat)(along_slope), (vfloat)(axis == 0 ? f->mm_per_px_x : f->mm_per_px_y));
-  const vfloat size_across = fma(p.z, (vfloat)(across_slope), (vfloat)(axis == 0 ? f->mm_per_px_y : f->mm_per_px_x));
+  const vfloat size_horizontal =
+      fma(p.z, (vfloat)(horizontal_slope), (vfloat)(axis == 0 ? f->mm_per_px_y : f->mm_per_px_x));
   // Change of position, and the change of that.
   const vfloat along = fma(ray_along, depth.slope, size);
-  const vfloat across = fma(ray_across, depth.slope, side * size_across);
+  const vfloat horizontal = fma(ray_horizontal, depth.slope, side * size_horizontal);
   const vfloat along_change = fma(ray_along, depth.change, 2.0f * along_slope * depth.slope);
-  const vfloat across_change = fma(ray_across, depth.change, 2.0f * side * across_slope * depth.slope);
-  const vfloat length = fma(along, along, fma(across, across, depth.slope * depth.slope));
-  const vfloat growth = fma(along, along_change, fma(across, across_change, depth.slope * depth.change));
-  const float square = rung->footprint * rung->footprint;
-  const float most_skew = MOST_SKEW / rung->last_offset_px;
+  const vfloat horizontal_change = fma(ray_horizontal, depth.change, 2.0f * side * horizontal_slope * depth.slope);
+  const vfloat length = fma(along, along, fma(horizontal, horizontal, depth.slope * depth.slope));
+  const vfloat growth = fma(along, along_change, fma(horizontal, horizontal_change, depth.slope * depth.change));
+  const float square = level->px_per_mm * level->px_per_mm;
+  const float most_skew = MOST_SKEW / level->last_offset_px;
   Bend bend;
   bend.stretch = clamp(fma((vfloat)(square), length, (vfloat)(-1.0f)), (vfloat)(-MOST_STRETCH), (vfloat)(MOST_STRETCH));
   bend.skew = clamp(square * growth, (vfloat)(-most_skew), (vfloat)(most_skew));

@@ -1,15 +1,15 @@
-// Curved cells: weights by the true distance of surface points. See Taps in taps.hpp.
-#include "separable/octaves.h"
-#include "separable/pass.h"
+// Curved blocks: weights by the true distance of surface points. See Taps in taps.hpp.
 #include "base/rotation.h"
 #include "frame/tangent.h"
+#include "separable/octaves.h"
+#include "separable/pass.h"
 
 // What every tap of the lanes of one material needs on a curved surface.
 typedef struct {
   Points points;
   vint material;    // 1 + its index, the same in all lanes
   vrgb reciprocal;  // of the width factor
-  float footprint;  // of the rung
+  float px_per_mm;  // of the level
   global const struct TermParams* terms;
 } Target;
 
@@ -22,7 +22,7 @@ typedef struct {
 
 // Adds a tap of each lane to the sums.
 FORCED_INLINE void add_taps(Sums* sums, const Target* target, global const struct WeightParams* its, const Tap* tap) {
-  const vfloat stretch = target->footprint * tap->segment;
+  const vfloat stretch = target->px_per_mm * tap->segment;
   const vrgb length = times(target->reciprocal, stretch);
   const vrgb distance = times(product(target->reciprocal, target->reciprocal), tap->r_squared);  // squared, over k^2
   vrgb first;
@@ -37,7 +37,7 @@ FORCED_INLINE void add_taps(Sums* sums, const Target* target, global const struc
       weight.g = fma(its[t].share[1], first.g, weight.g);
       weight.b = fma(its[t].share[2], first.b, weight.b);
     }
-    sums->light[t] = fused(weight, tap->light[t], sums->light[t]);
+    sums->light[t] = multiply_add(weight, tap->light[t], sums->light[t]);
     sums->weight[t] = sum_rgb(sums->weight[t], weight);
   }
 }
@@ -53,7 +53,7 @@ FORCED_INLINE Shears shears_at(const struct FrameParams* f, const Pass* s, vint 
   Shears shears = {(vint)(0), 0, 0};
 #if SHEARED
   if (s->axis == 0) return shears;
-  const vint mine = AS_MASK((load_bytes(s->from->surface + pixel_at(s->from, x, y)) & MATERIAL_MASK) == material);
+  const vint mine = AS_MASK((load_bytes(s->from->material_ids + pixel_at(s->from, x, y)) & MATERIAL_MASK) == material);
   shears.lanes = shear_at(f, s->from, x, y);
   shears.low = lowest_lane(select((vint)(INT_MAX), shears.lanes, mine));
   shears.high = highest_lane(select((vint)(-INT_MAX), shears.lanes, mine));
@@ -62,8 +62,8 @@ FORCED_INLINE Shears shears_at(const struct FrameParams* f, const Pass* s, vint 
 }
 
 #if SHEARED
-// The pixels so many rows away, each lane its own to the side, of one run of PICKED pixels. Returns whether there is
-// another run.
+// The pixels so many rows away, each lane its own to the side, of one run of LOOKUP_SIZE pixels. Returns whether there
+// is another run.
 FORCED_INLINE int load_sheared(Tap* tap, const struct FrameParams* f, const Pass* s, const Target* target,
                                const Shears* shears, int x, int y, int offset, int run, const int clean) {
   const Window* w = s->from;
@@ -71,30 +71,30 @@ FORCED_INLINE int load_sheared(Tap* tap, const struct FrameParams* f, const Pass
   const vint to_x = x + int_lane_numbers() + side;
   const int one_end = side_of(shears->low, offset);
   const int other_end = side_of(shears->high, offset);
-  const int from = x + min(one_end, other_end) + run * PICKED;
+  const int from = x + min(one_end, other_end) + run * LOOKUP_SIZE;
   // There is no memory beyond the window.
-  const int begin = clamp(from, w->x_begin - PADDING, w->x_end + PADDING - PICKED);
-  const vint index = (to_x - begin) & (PICKED - 1);
+  const int begin = clamp(from, w->x_begin - PADDING, w->x_end + PADDING - LOOKUP_SIZE);
+  const vint index = (to_x - begin) & (LOOKUP_SIZE - 1);
   const size_t at = pixel_at(w, begin, y + offset);
-  const int has_more = from + PICKED < x + V + max(one_end, other_end);
-  tap->segment = pick(w->segment + at, index);
-  tap->r_squared =
-      squared_distance_down(f, &target->points, pick(w->depth + at, index), as_floats(side), (float)offset);
+  const int has_more = from + LOOKUP_SIZE < x + V + max(one_end, other_end);
+  tap->segment = table_lookup(w->segment + at, index);
+  tap->r_squared = squared_distance_vertical(f, &target->points, table_lookup(w->depth + at, index),
+                                             convert_vfloat(side), (float)offset);
 #pragma unroll
   for (int t = 0; t < TERMS; ++t) {
     global const float* its_light = w->light + t * s->next_light + at;
-    tap->light[t].r = pick(its_light, index);
-    tap->light[t].g = pick(its_light + w->plane, index);
-    tap->light[t].b = pick(its_light + 2 * w->plane, index);
+    tap->light[t].r = table_lookup(its_light, index);
+    tap->light[t].g = table_lookup(its_light + w->plane, index);
+    tap->light[t].b = table_lookup(its_light + 2 * w->plane, index);
   }
   if (!clean || run > 0 || has_more) {
-    vint there = AS_MASK(to_x >= from) & AS_MASK(to_x < from + PICKED);
+    vint there = AS_MASK(to_x >= from) & AS_MASK(to_x < from + LOOKUP_SIZE);
     if (!clean) {
       there &= AS_MASK(to_x >= 0) & AS_MASK(to_x < f->width) &
-               AS_MASK((pick_bytes(w->material + at, index) & MATERIAL_MASK) == target->material);
+               AS_MASK((table_lookup_bytes(w->material + at, index) & MATERIAL_MASK) == target->material);
     }
-    tap->segment = keep(there, tap->segment);
-    for (int t = 0; t < TERMS; ++t) tap->light[t] = keep_rgb(there, tap->light[t]);
+    tap->segment = select_or_zero(there, tap->segment);
+    for (int t = 0; t < TERMS; ++t) tap->light[t] = select_or_zero_rgb(there, tap->light[t]);
   }
   return has_more;
 }
@@ -121,7 +121,7 @@ FORCED_INLINE int add_tap(Sums* sums, const struct FrameParams* f, const Pass* s
     tap.segment = load_floats(s->from->segment + at);
     const vfloat z = load_floats(s->from->depth + at);
     tap.r_squared = side == 0 ? squared_distance_along(f, &target->points, z, (float)offset, s->axis)
-                              : squared_distance_down(f, &target->points, z, (vfloat)((float)side), (float)offset);
+                              : squared_distance_vertical(f, &target->points, z, (vfloat)((float)side), (float)offset);
 #pragma unroll
     for (int t = 0; t < TERMS; ++t) tap.light[t] = load_term(s, t, at);
     if (!clean) {
@@ -129,9 +129,9 @@ FORCED_INLINE int add_tap(Sums* sums, const struct FrameParams* f, const Pass* s
       vint there = AS_MASK((load_bytes(s->from->material + at) & MATERIAL_MASK) == target->material);
       if (side != 0) {
         there &= AS_MASK(to_x + int_lane_numbers() >= 0) & AS_MASK(to_x + int_lane_numbers() < f->width);
-        for (int t = 0; t < TERMS; ++t) tap.light[t] = keep_rgb(there, tap.light[t]);
+        for (int t = 0; t < TERMS; ++t) tap.light[t] = select_or_zero_rgb(there, tap.light[t]);
       }
-      tap.segment = keep(there, tap.segment);
+      tap.segment = select_or_zero(there, tap.segment);
     }
   }
   add_taps(sums, target, its, &tap);
@@ -167,8 +167,8 @@ FORCED_INLINE void add_rotated(Sums* sums, const struct FrameParams* f, const Pa
   EACH_LANE(READ_LANE)
 #undef READ_LANE
   const vint same = AS_MASK((m & MATERIAL_MASK) == target->material);
-  for (int t = 0; t < TERMS; ++t) tap.light[t] = keep_rgb(same, tap.light[t]);
-  tap.segment = keep(same, tap.segment);
+  for (int t = 0; t < TERMS; ++t) tap.light[t] = select_or_zero_rgb(same, tap.light[t]);
+  tap.segment = select_or_zero(same, tap.segment);
   tap.r_squared = squared_distance(f, &target->points, z, fx, fy);
   add_taps(sums, target, its, &tap);
 }
@@ -195,35 +195,35 @@ FORCED_INLINE int offset_of(global const int* offsets, int tap) {
 
 // The lanes of one material on a curved surface. `clean`: all taps fall on it.
 FORCED_INLINE void scatter_curved(vrgb* result, const struct FrameParams* f, const Pass* s, const Tables* tables,
-                                  global const struct RungParams* rung, global const struct TermParams* terms,
+                                  global const struct TapLevelParams* level, global const struct TermParams* terms,
                                   vint material, int x, int y, const int clean) {
   const size_t at = pixel_at(s->from, x, y);
-  global const struct WeightParams* weights = tables->weights + rung->first_weight;
-  global const int* offsets = tables->offsets + rung->first_offset;
+  global const struct WeightParams* weights = tables->weights + level->first_weight;
+  global const int* offsets = tables->offsets + level->first_offset;
   Target target;
   target.points = points_at(f, load_floats(s->from->depth + at), x, y);
   target.material = material;
   target.reciprocal = width_reciprocal(s->from, at);
-  target.footprint = rung->footprint;
+  target.px_per_mm = level->px_per_mm;
   target.terms = terms;
-  const vfloat core_mm = rung->core_half_width_px * load_floats(s->from->segment + at);
+  const vfloat centre_mm = level->centre_half_width_px * load_floats(s->from->segment + at);
   Sums sums;
   vrgb own[TERMS];
 #pragma unroll
   for (int t = 0; t < TERMS; ++t) {
     own[t] = load_term(s, t, at);
-    const vrgb core = terms[t].normalised
-                          ? scaled(weights[t].length_mm, look_up(&terms[t].core, times(target.reciprocal, core_mm)))
-                          : same_rgb((vfloat)(0.0f));
-    sums.light[t] = product(core, own[t]);
-    sums.weight[t] = core;
+    const vrgb centre = terms[t].normalised ? scaled(weights[t].length_mm,
+                                                     look_up(&terms[t].centre, times(target.reciprocal, centre_mm)))
+                                            : broadcast_rgb((vfloat)(0.0f));
+    sums.light[t] = product(centre, own[t]);
+    sums.weight[t] = centre;
   }
   int i = 0;
 #if JITTER
   vint axis_x, axis_y;
   rotated_axis(tables->rotations, rotation_index(x + int_lane_numbers(), (vint)(y), tables->seed), s->axis, &axis_x,
                &axis_y);
-  for (; i < rung->rotated_pairs; ++i) {
+  for (; i < level->rotated_pairs; ++i) {
     const vint dx = (offsets[i] * axis_x + 2048) >> 12;
     const vint dy = (offsets[i] * axis_y + 2048) >> 12;
     global const struct WeightParams* its = weights + (i + 1) * TERMS;
@@ -234,7 +234,7 @@ FORCED_INLINE void scatter_curved(vrgb* result, const struct FrameParams* f, con
   const Shears shears = shears_at(f, s, material, x, y);
   int run = 0;
 #pragma nounroll
-  for (int tap = 2 * i; tap < 2 * rung->pairs;) {
+  for (int tap = 2 * i; tap < 2 * level->pairs;) {
     global const struct WeightParams* its = weights + (tap / 2 + 1) * TERMS;
     const int has_more = add_tap(&sums, f, s, &target, its, &shears, x, y, offset_of(offsets, tap), run, clean);
     run = has_more ? run + 1 : 0;

@@ -1,16 +1,16 @@
-// Flat cells: constant weights. See Taps in taps.hpp.
+// Flat blocks: constant weights. See Taps in taps.hpp.
+#include "classify/tap_level.h"
 #include "separable/pass.h"
-#include "classify/rung.h"
 
 // Pairs from `i` on, in which only some channels have weights.
-SHARED void add_last_pairs(vrgb* sums, const Pass* s, global const struct RungParams* rung, global const int* offsets,
-                           global const struct FlatWeight* weights, int i, int x, int y) {
+SHARED void add_last_pairs(vrgb* sums, const Pass* s, global const struct TapLevelParams* level,
+                           global const int* offsets, global const struct FlatWeight* weights, int i, int x, int y) {
 #pragma nounroll
-  for (; i < rung->pairs; ++i) {
+  for (; i < level->pairs; ++i) {
     const TapPair taps = pair_at(s, x, y, offsets, i);
     weights += TERMS;
 #define ADD_CHANNEL(name, channel)                                                                   \
-  if (i < rung->channel_pairs[channel]) {                                                            \
+  if (i < level->channel_pairs[channel]) {                                                           \
     for (int t = 0; t < TERMS; ++t) {                                                                \
       const ChannelPair pair = load_channel_pair(s, t, channel, taps);                               \
       sums[t].name = fma((vfloat)(weights[t].rgb[channel]), pair.after + pair.before, sums[t].name); \
@@ -30,8 +30,8 @@ typedef struct {
   int x, y;
 } Pixel;
 
-// A flat cell where every tap falls on the material.
-FORCED_INLINE void scatter_clean(vrgb (*result)[TERMS], const Pass* s, global const struct RungParams* rung,
+// A flat block where every tap falls on the material.
+FORCED_INLINE void scatter_clean(vrgb (*result)[TERMS], const Pass* s, global const struct TapLevelParams* level,
                                  global const int* offsets, global const struct FlatWeight* weights, const Pixel* p) {
 #pragma unroll
   for (int n = 0; n < AT_ONCE; ++n) {
@@ -40,7 +40,7 @@ FORCED_INLINE void scatter_clean(vrgb (*result)[TERMS], const Pass* s, global co
       result[n][t] = scaled(weights[t].rgb, load_term(s, t, pixel_at(s->from, p[n].x, p[n].y)));
     }
   }
-  const int full_pairs = full_pairs_of(rung);
+  const int full_pairs = full_pairs_of(level);
   int i = 0;
 #pragma nounroll
   for (; i < full_pairs; ++i) {
@@ -56,22 +56,22 @@ FORCED_INLINE void scatter_clean(vrgb (*result)[TERMS], const Pass* s, global co
       }
     }
   }
-  if (i < rung->pairs) {
+  if (i < level->pairs) {
     vrgb rest[TERMS];
     for (int n = 0; n < AT_ONCE; ++n) {
       for (int t = 0; t < TERMS; ++t) rest[t] = result[n][t];
-      add_last_pairs(rest, s, rung, offsets, weights, i, p[n].x, p[n].y);
+      add_last_pairs(rest, s, level, offsets, weights, i, p[n].x, p[n].y);
       for (int t = 0; t < TERMS; ++t) result[n][t] = rest[t];
     }
   }
 }
 
-// A flat cell where some taps fall on something else. With none it gives the same bits as scatter_clean.
+// A flat block where some taps fall on something else. With none it gives the same bits as scatter_clean.
 FORCED_INLINE void scatter_flat(vrgb* result, const struct FrameParams* f, const Pass* s, const Tables* tables,
-                                global const struct RungParams* rung, global const struct FlatWeight* weights,
+                                global const struct TapLevelParams* level, global const struct FlatWeight* weights,
                                 global const struct TermParams* terms, vint material, int x, int y) {
   const size_t at = pixel_at(s->from, x, y);
-  global const int* offsets = tables->offsets + rung->first_offset;
+  global const int* offsets = tables->offsets + level->first_offset;
   vrgb own[TERMS];
   Sums sums;
 #pragma unroll
@@ -82,22 +82,22 @@ FORCED_INLINE void scatter_flat(vrgb* result, const struct FrameParams* f, const
     sums.weight[t] = centre;
   }
 #pragma nounroll
-  for (int i = 0; i < rung->pairs; ++i) {
+  for (int i = 0; i < level->pairs; ++i) {
     weights += TERMS;
     vrgb pair[TERMS];
     vfloat there = (vfloat)(0.0f);
-    for (int t = 0; t < TERMS; ++t) pair[t] = same_rgb((vfloat)(0.0f));
+    for (int t = 0; t < TERMS; ++t) pair[t] = broadcast_rgb((vfloat)(0.0f));
 #pragma nounroll
     for (int side = -1; side <= 1; side += 2) {
       const int offset = side * offsets[i];
       if (!in_frame(f, s, x, y, offset)) continue;
       const size_t tap = tap_at(s, x, y, offset);
       const vint same = lanes_of(f, s, material, tap, x, offset);
-      there += keep(same, (vfloat)(1.0f));
+      there += select_or_zero(same, (vfloat)(1.0f));
 #pragma unroll
       for (int t = 0; t < TERMS; ++t) {
         const vrgb light = load_term(s, t, tap);
-        pair[t] = sum_rgb(pair[t], keep_rgb(same, light));
+        pair[t] = sum_rgb(pair[t], select_or_zero_rgb(same, light));
       }
     }
 #pragma unroll
@@ -118,7 +118,7 @@ FORCED_INLINE void scatter_flat(vrgb* result, const struct FrameParams* f, const
       // The weight of the centre makes the sum of all that of the term; what is missing counts as the centre.
       const vrgb missing = {terms[t].sum[0] - sums.weight[t].r, terms[t].sum[1] - sums.weight[t].g,
                             terms[t].sum[2] - sums.weight[t].b};
-      result[t] = fused(missing, own[t], sums.light[t]);
+      result[t] = multiply_add(missing, own[t], sums.light[t]);
     }
   }
 }

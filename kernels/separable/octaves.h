@@ -1,6 +1,6 @@
 // Functions of the squared distance, a parabola in each octave of its square: RadialTable of taps.hpp.
-#include "params.h"
 #include "base/vector.h"
+#include "params.h"
 
 // Which octave, and where in it.
 typedef struct {
@@ -18,9 +18,9 @@ FORCED_INLINE Octave octave_of(global const struct OctavesParams* table, vfloat 
 }
 
 FORCED_INLINE vfloat parabola(global const struct OctavesParams* table, int channel, Octave at) {
-  const vfloat a = pick(table->coefficients[channel][0], at.octave);
-  const vfloat b = pick(table->coefficients[channel][1], at.octave);
-  const vfloat c = pick(table->coefficients[channel][2], at.octave);
+  const vfloat a = table_lookup(table->coefficients[channel][0], at.octave);
+  const vfloat b = table_lookup(table->coefficients[channel][1], at.octave);
+  const vfloat c = table_lookup(table->coefficients[channel][2], at.octave);
   return fma(at.t, fma(at.t, c, b), a);
 }
 

@@ -10,13 +10,13 @@
 typedef struct {
   global const struct MaterialParams* materials;
   global const struct TermParams* terms;
-  global const struct RungParams* rungs;
+  global const struct TapLevelParams* levels;
   global const int* offsets;
   global const struct WeightParams* weights;
   global const struct FlatWeight* flat_weights;
   global const struct SmoothWeight* smooth_weights;
   global const struct RotationParams* rotations;
-  global const struct CellPasses* passes;
+  global const struct BlockPasses* passes;
   uint seed;
 } Tables;
 
@@ -34,7 +34,7 @@ typedef struct {
   int y_step;
   int shear;          // of the vertical pass, columns per row times 4096
   size_t next_light;  // from the image of one term to that of the next
-  TapPlaces places;   // of the vertical pass over cells where every tap falls on the material
+  TapPlaces places;   // of the vertical pass over blocks where every tap falls on the material
 } Pass;
 
 typedef struct {
@@ -89,7 +89,7 @@ FORCED_INLINE vrgb finish_term(global const struct TermParams* term, vrgb light,
     return mean;
   }
   const vrgb missing = {term->sum[0] - weight.r, term->sum[1] - weight.g, term->sum[2] - weight.b};
-  return fused(missing, own, light);
+  return multiply_add(missing, own, light);
 }
 
 // Whether the V pixels an offset away lie in the frame, some of them.

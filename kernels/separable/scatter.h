@@ -1,17 +1,17 @@
 // One separable pass over V pixels of a row. See Taps in taps.hpp for what it computes.
+#include "classify/tap_level.h"
 #include "separable/curved.h"
 #include "separable/flat.h"
-#include "classify/rung.h"
 #include "separable/smooth.h"
 
-static inline struct CellPass cell_pass(const struct FrameParams* f, const Tables* tables, int cell_x, int cell_y,
-                                        int axis) {
-  global const struct CellPasses* passes = tables->passes + (size_t)cell_y * f->cells_x + cell_x;
+static inline struct BlockPass block_pass(const struct FrameParams* f, const Tables* tables, int block_x, int block_y,
+                                          int axis) {
+  global const struct BlockPasses* passes = tables->passes + (size_t)block_y * f->blocks_x + block_x;
   return axis == 0 ? passes->x : passes->y;
 }
 
-static inline int first_flat_weight(global const struct RungParams* rung, int part) {
-  return rung->first_flat_weight + part * (rung->pairs + 1) * TERMS;
+static inline int first_flat_weight(global const struct TapLevelParams* level, int part) {
+  return level->first_flat_weight + part * (level->pairs + 1) * TERMS;
 }
 
 // The sum of all terms.
@@ -28,10 +28,10 @@ SHARED void scatter_pixels(vrgb* result, const struct FrameParams* f, const Pass
                            int y) {
   const size_t at = pixel_at(s->from, x, y);
   const vint m = load_bytes(s->from->material + at);
-  const struct CellPass pass = cell_pass(f, tables, x / CELL, y / CELL, s->axis);
+  const struct BlockPass pass = block_pass(f, tables, x / BLOCK, y / BLOCK, s->axis);
   Pass its_pass = *s;
   its_pass.shear = pass.shear;
-  for (int t = 0; t < TERMS; ++t) result[t] = same_rgb((vfloat)(0.0f));
+  for (int t = 0; t < TERMS; ++t) result[t] = broadcast_rgb((vfloat)(0.0f));
   for (int i = 0; i < MATERIALS; ++i) {
     const vint material = (vint)(i + 1);
     const vint lanes = AS_MASK((m & MATERIAL_MASK) == material);
@@ -39,17 +39,17 @@ SHARED void scatter_pixels(vrgb* result, const struct FrameParams* f, const Pass
     global const struct MaterialParams* its = tables->materials + i;
     global const struct TermParams* terms = tables->terms + its->first_term;
     const vint mine = AS_MASK(m == material);
-    const Step step = step_of(its, pass.footprint, pass.shape);
+    const Step step = step_of(its, pass.px_per_mm, pass.block_class);
     vrgb scattered[TERMS];
-    const int has_taps = step.rung >= 0 && any_bit(mine);
+    const int has_taps = step.level >= 0 && any_bit(mine);
     if (has_taps) {
-      global const struct RungParams* rung = tables->rungs + its->first_rung + step.rung;
-      if (pass.shape == SHAPE_CURVED) {
-        scatter_curved(scattered, f, &its_pass, tables, rung, terms, material, x, y, 0);
-      } else if (pass.shape == SHAPE_SMOOTH) {
-        scatter_smooth(scattered, f, &its_pass, tables, rung, terms, material, x, y);
+      global const struct TapLevelParams* level = tables->levels + its->first_level + step.level;
+      if (pass.block_class == CLASS_CURVED) {
+        scatter_curved(scattered, f, &its_pass, tables, level, terms, material, x, y, 0);
+      } else if (pass.block_class == CLASS_SMOOTH) {
+        scatter_smooth(scattered, f, &its_pass, tables, level, terms, material, x, y);
       } else {
-        scatter_flat(scattered, f, &its_pass, tables, rung, tables->flat_weights + first_flat_weight(rung, step.part),
+        scatter_flat(scattered, f, &its_pass, tables, level, tables->flat_weights + first_flat_weight(level, step.part),
                      terms, material, x, y);
       }
     }

@@ -1,15 +1,16 @@
-// Smooth cells: weights to first order in the stretch and the skew of each pixel. See Taps in taps.hpp.
+// Smooth blocks: weights to first order in the stretch and the skew of each pixel. See Taps in taps.hpp.
+#include "classify/tap_level.h"
 #include "separable/bend.h"
 #include "separable/pass.h"
-#include "classify/rung.h"
 
-// The sums of a smooth cell that its weights are made of.
+// The sums of a smooth block that its weights are made of.
 typedef struct {
   vrgb rgb, stretch, skew;
 } SmoothSums;
 
 FORCED_INLINE vrgb smooth_total(const SmoothSums* sums, Bend bend) {
-  return fused(same_rgb(bend.skew), sums->skew, fused(same_rgb(bend.stretch), sums->stretch, sums->rgb));
+  return multiply_add(broadcast_rgb(bend.skew), sums->skew,
+                      multiply_add(broadcast_rgb(bend.stretch), sums->stretch, sums->rgb));
 }
 
 FORCED_INLINE vrgb difference_rgb(vrgb a, vrgb b) {
@@ -24,20 +25,20 @@ FORCED_INLINE void add_smooth(SmoothSums* sums, global const struct SmoothWeight
 }
 
 FORCED_INLINE SmoothSums smooth_centre(global const struct SmoothWeight* weight, vrgb own) {
-  const SmoothSums sums = {scaled(weight->rgb, own), scaled(weight->stretch, own), same_rgb((vfloat)(0.0f))};
+  const SmoothSums sums = {scaled(weight->rgb, own), scaled(weight->stretch, own), broadcast_rgb((vfloat)(0.0f))};
   return sums;
 }
 
 // As add_last_pairs.
-SHARED void add_last_smooth_pairs(SmoothSums* sums, const Pass* s, global const struct RungParams* rung,
+SHARED void add_last_smooth_pairs(SmoothSums* sums, const Pass* s, global const struct TapLevelParams* level,
                                   global const int* offsets, global const struct SmoothWeight* weights, int i, int x,
                                   int y) {
 #pragma nounroll
-  for (; i < rung->pairs; ++i) {
+  for (; i < level->pairs; ++i) {
     const TapPair taps = pair_at(s, x, y, offsets, i);
     weights += TERMS;
 #define ADD_CHANNEL(name, channel)                                                                              \
-  if (i < rung->channel_pairs[channel]) {                                                                       \
+  if (i < level->channel_pairs[channel]) {                                                                      \
     for (int t = 0; t < TERMS; ++t) {                                                                           \
       const ChannelPair pair = load_channel_pair(s, t, channel, taps);                                          \
       const vfloat both = pair.after + pair.before;                                                             \
@@ -53,16 +54,16 @@ SHARED void add_last_smooth_pairs(SmoothSums* sums, const Pass* s, global const 
   }
 }
 
-// A smooth cell where every tap falls on the material.
+// A smooth block where every tap falls on the material.
 FORCED_INLINE void scatter_smooth_clean(vrgb* result, const struct FrameParams* f, const Pass* s,
-                                        global const struct RungParams* rung, global const int* offsets,
+                                        global const struct TapLevelParams* level, global const int* offsets,
                                         global const struct SmoothWeight* weights, int x, int y) {
   const size_t at = pixel_at(s->from, x, y);
-  const Bend bend = bend_at(f, s->from, rung, x, y, s->axis, s->shear, 1);
+  const Bend bend = bend_at(f, s->from, level, x, y, s->axis, s->shear, 1);
   SmoothSums sums[TERMS];
 #pragma unroll
   for (int t = 0; t < TERMS; ++t) sums[t] = smooth_centre(weights + t, load_term(s, t, at));
-  const int full_pairs = full_pairs_of(rung);
+  const int full_pairs = full_pairs_of(level);
   int i = 0;
 #pragma nounroll
   for (; i < full_pairs; ++i) {
@@ -80,24 +81,24 @@ FORCED_INLINE void scatter_smooth_clean(vrgb* result, const struct FrameParams* 
       add_smooth(sums + t, weights + t, both, change);
     }
   }
-  if (i < rung->pairs) {
+  if (i < level->pairs) {
     SmoothSums rest[TERMS];
     for (int t = 0; t < TERMS; ++t) rest[t] = sums[t];
-    add_last_smooth_pairs(rest, s, rung, offsets, weights, i, x, y);
+    add_last_smooth_pairs(rest, s, level, offsets, weights, i, x, y);
     for (int t = 0; t < TERMS; ++t) sums[t] = rest[t];
   }
 #pragma unroll
   for (int t = 0; t < TERMS; ++t) result[t] = smooth_total(sums + t, bend);
 }
 
-// A smooth cell where some taps fall on something else. With none it gives the same bits as scatter_smooth_clean.
+// A smooth block where some taps fall on something else. With none it gives the same bits as scatter_smooth_clean.
 FORCED_INLINE void scatter_smooth(vrgb* result, const struct FrameParams* f, const Pass* s, const Tables* tables,
-                                  global const struct RungParams* rung, global const struct TermParams* terms,
+                                  global const struct TapLevelParams* level, global const struct TermParams* terms,
                                   vint material, int x, int y) {
   const size_t at = pixel_at(s->from, x, y);
-  global const int* offsets = tables->offsets + rung->first_offset;
-  global const struct SmoothWeight* weights = tables->smooth_weights + rung->first_smooth_weight;
-  const Bend bend = bend_at(f, s->from, rung, x, y, s->axis, s->shear, 0);
+  global const int* offsets = tables->offsets + level->first_offset;
+  global const struct SmoothWeight* weights = tables->smooth_weights + level->first_smooth_weight;
+  const Bend bend = bend_at(f, s->from, level, x, y, s->axis, s->shear, 0);
   vrgb own[TERMS];
   SmoothSums light[TERMS];
   SmoothSums weight[TERMS];
@@ -105,34 +106,34 @@ FORCED_INLINE void scatter_smooth(vrgb* result, const struct FrameParams* f, con
   for (int t = 0; t < TERMS; ++t) {
     own[t] = load_term(s, t, at);
     light[t] = smooth_centre(weights + t, own[t]);
-    weight[t] = smooth_centre(weights + t, same_rgb((vfloat)(1.0f)));
+    weight[t] = smooth_centre(weights + t, broadcast_rgb((vfloat)(1.0f)));
   }
 #pragma nounroll
-  for (int i = 0; i < rung->pairs; ++i) {
+  for (int i = 0; i < level->pairs; ++i) {
     weights += TERMS;
     vrgb both[TERMS], change[TERMS];
     vfloat there = (vfloat)(0.0f);
     vfloat lopsided = (vfloat)(0.0f);
-    for (int t = 0; t < TERMS; ++t) both[t] = change[t] = same_rgb((vfloat)(0.0f));
+    for (int t = 0; t < TERMS; ++t) both[t] = change[t] = broadcast_rgb((vfloat)(0.0f));
 #pragma nounroll
     for (int side = -1; side <= 1; side += 2) {
       const int offset = side * offsets[i];
       if (!in_frame(f, s, x, y, offset)) continue;
       const size_t tap = tap_at(s, x, y, offset);
       const vint same = lanes_of(f, s, material, tap, x, offset);
-      there += keep(same, (vfloat)(1.0f));
-      lopsided += keep(same, (vfloat)(side));
+      there += select_or_zero(same, (vfloat)(1.0f));
+      lopsided += select_or_zero(same, (vfloat)(side));
 #pragma unroll
       for (int t = 0; t < TERMS; ++t) {
-        const vrgb its = keep_rgb(same, load_term(s, t, tap));
+        const vrgb its = select_or_zero_rgb(same, load_term(s, t, tap));
         both[t] = sum_rgb(both[t], its);
-        change[t] = fused(same_rgb((vfloat)(side)), its, change[t]);
+        change[t] = multiply_add(broadcast_rgb((vfloat)(side)), its, change[t]);
       }
     }
 #pragma unroll
     for (int t = 0; t < TERMS; ++t) {
       add_smooth(light + t, weights + t, both[t], change[t]);
-      add_smooth(weight + t, weights + t, same_rgb(there), same_rgb(lopsided));
+      add_smooth(weight + t, weights + t, broadcast_rgb(there), broadcast_rgb(lopsided));
     }
   }
 #pragma unroll
@@ -142,7 +143,7 @@ FORCED_INLINE void scatter_smooth(vrgb* result, const struct FrameParams* f, con
     if (!terms[t].normalised) {
       // The weight of the centre makes the sum of all that of the term; what is missing counts as the centre.
       const vrgb missing = {terms[t].sum[0] - all.r, terms[t].sum[1] - all.g, terms[t].sum[2] - all.b};
-      result[t] = fused(missing, own[t], sum);
+      result[t] = multiply_add(missing, own[t], sum);
     } else {
       result[t] = finish_term(terms + t, sum, all, own[t]);
     }

@@ -1,118 +1,126 @@
 // scatter: everything between the caller's images, tile by tile. A worker has windows of its own and takes one tile
 // after the other.
 #pragma OPENCL FP_CONTRACT OFF
-#include "separable/tile_across.h"
-#include "separable/tile_down.h"
+#include "separable/tile_horizontal.h"
+#include "separable/tile_vertical.h"
 
 // Both passes.
-static inline Sight scatter_rows(const Windows* w, const struct FrameParams* f, const Inputs* in, const Outputs* out,
-                                 const Tables* tables, int copies, int skips, global float* held) {
-  Sight sight = {{0.0f, 0.0f, 0.0f}, 0, 0, INT_MIN, INT_MIN};
-  const Window* across = &w->across;
-  const Window* down = &w->down;
+static inline LightSummary scatter_rows(const Windows* w, const struct FrameParams* f, const Inputs* in,
+                                        const Outputs* out, const Tables* tables, int copies, int skips,
+                                        global float* deferred) {
+  LightSummary light_summary = {{0.0f, 0.0f, 0.0f}, 0, 0, INT_MIN, INT_MIN};
+  const Window* horizontal = &w->horizontal;
+  const Window* vertical = &w->vertical;
   int next = w->own_y_begin;
-  int next_surface = down->y_begin;
+  int next_surface = vertical->y_begin;
   const Columns nothing = {0, 0};
   Columns there = nothing;
   Columns bent = nothing;
   Columns curved = nothing;
-  const Columns segments_down = widened(w->curved_down, w->side_px, down);
-  const Columns surface_down = joined(widened(w->bent_down, V, down), widened(segments_down, V, down));
-  for (int y = across->y_begin; y < across->y_end; ++y) {
-    if (y % CELL == 0 || y == across->y_begin) {
-      there = columns_of(f, tables, w->x_begin, w->x_end, y, y + 1, 0, SHAPE_EMPTY + 1);
-      there = widened(there, w->reach_x + V, across);
+  const Columns segments_vertical = widened(w->curved_vertical, w->side_px, vertical);
+  const Columns surface_vertical =
+      joined(widened(w->bent_vertical, V, vertical), widened(segments_vertical, V, vertical));
+  for (int y = horizontal->y_begin; y < horizontal->y_end; ++y) {
+    if (y % BLOCK == 0 || y == horizontal->y_begin) {
+      there = columns_of(f, tables, w->x_begin, w->x_end, y, y + 1, 0, CLASS_EMPTY + 1);
+      there = widened(there, w->reach_x + V, horizontal);
     }
-    load_light_row(&sight, w, f, in, there, y);
-    if (w->shape_across != SHAPE_FLAT && (y % CELL == 0 || y == across->y_begin)) {
-      bent = widened(columns_of(f, tables, w->x_begin, w->x_end, y, y + 1, 0, SHAPE_SMOOTH), 0, across);
-      curved = widened(columns_of(f, tables, w->x_begin, w->x_end, y, y + 1, 0, SHAPE_CURVED), w->reach_x + V, across);
+    load_light_row(&light_summary, w, f, in, there, y);
+    if (w->class_horizontal != CLASS_FLAT && (y % BLOCK == 0 || y == horizontal->y_begin)) {
+      bent = widened(columns_of(f, tables, w->x_begin, w->x_end, y, y + 1, 0, CLASS_SMOOTH), 0, horizontal);
+      curved =
+          widened(columns_of(f, tables, w->x_begin, w->x_end, y, y + 1, 0, CLASS_CURVED), w->reach_x + V, horizontal);
     }
     if (bent.begin < bent.end) {
-      const Columns loaded = widened(joined(bent, curved), V, across);  // slopes are taken from the next pixels, too
-      load_surface_row(across, f, in, tables->materials, loaded.begin, loaded.end, y);
+      const Columns loaded =
+          widened(joined(bent, curved), V, horizontal);  // slopes are taken from the next pixels, too
+      load_surface_row(horizontal, f, in, tables->materials, loaded.begin, loaded.end, y);
     }
-    measure_segments(across, f, in, 0, max(curved.begin, across->x_begin), min(curved.end, across->x_end), y);
-    if (w->shape_down != SHAPE_FLAT) {
+    measure_segments(horizontal, f, in, 0, max(curved.begin, horizontal->x_begin), min(curved.end, horizontal->x_end),
+                     y);
+    if (w->class_vertical != CLASS_FLAT) {
       // Slopes are taken from the next row, too.
-      for (; next_surface < min(y + 2, down->y_end); ++next_surface) {
-        load_surface_row(down, f, in, tables->materials, surface_down.begin, surface_down.end, next_surface);
+      for (; next_surface < min(y + 2, vertical->y_end); ++next_surface) {
+        load_surface_row(vertical, f, in, tables->materials, surface_vertical.begin, surface_vertical.end,
+                         next_surface);
       }
       if (y >= w->y_begin && y < w->y_end) {
-        measure_segments(down, f, in, 1, max(segments_down.begin, down->x_begin), min(segments_down.end, down->x_end),
-                         y);
+        measure_segments(vertical, f, in, 1, max(segments_vertical.begin, vertical->x_begin),
+                         min(segments_vertical.end, vertical->x_end), y);
       }
     }
 #if !JITTER
-    scatter_row(w, f, in, tables, &sight, skips, y);
+    scatter_row(w, f, in, tables, &light_summary, skips, y);
     // At the end of the window all that is left is complete.
     while (next < w->own_y_end) {
-      const int end = min((next / BAND + 1) * BAND, w->own_y_end);
-      if (y + 1 < min(end + w->reach_y, across->y_end)) break;
-      scatter_down(w, f, in, out, tables, &sight, copies, skips, held, next, end);
+      const int end = min((next / STRIP_ROWS + 1) * STRIP_ROWS, w->own_y_end);
+      if (y + 1 < min(end + w->reach_y, horizontal->y_end)) break;
+      scatter_vertical(w, f, in, out, tables, &light_summary, copies, skips, deferred, next, end);
       next = end;
     }
 #endif
   }
 #if JITTER
   // Turned taps need all rows.
-  for (int y = w->y_begin; y < w->y_end; ++y) scatter_row(w, f, in, tables, &sight, 0, y);
-  sight.last_bad = sight.last_varied = w->y_end;
+  for (int y = w->y_begin; y < w->y_end; ++y) scatter_row(w, f, in, tables, &light_summary, 0, y);
+  light_summary.last_bad = light_summary.last_varied = w->y_end;
   while (next < w->own_y_end) {
-    const int end = min((next / BAND + 1) * BAND, w->own_y_end);
-    scatter_down(w, f, in, out, tables, &sight, copies, 0, held, next, end);
+    const int end = min((next / STRIP_ROWS + 1) * STRIP_ROWS, w->own_y_end);
+    scatter_vertical(w, f, in, out, tables, &light_summary, copies, 0, deferred, next, end);
     next = end;
   }
 #endif
-  return sight;
+  return light_summary;
 }
 
-// Whether a cell has changed that the light of a tile may depend on.
+// Whether a block has changed that the light of a tile may depend on.
 static inline int any_changed(const struct FrameParams* f, const Windows* w, global const uchar* changed) {
-  // The shape of a cell is that of what lies within 9/8 of its taps.
-  const int more_x = w->reach_x / 8 + CELL;
-  const int more_y = w->reach_y / 8 + CELL;
-  const int x_end = min(w->across.x_end + more_x, f->width);
-  const int y_end = min(w->across.y_end + more_y, f->height);
-  for (int cy = max(w->across.y_begin - more_y, 0) / CELL; cy * CELL < y_end; ++cy) {
-    for (int cx = max(w->across.x_begin - more_x, 0) / CELL; cx * CELL < x_end; ++cx) {
-      if (changed[(size_t)cy * f->cells_x + cx]) return 1;
+  // The shape of a block is that of what lies within 9/8 of its taps.
+  const int more_x = w->reach_x / 8 + BLOCK;
+  const int more_y = w->reach_y / 8 + BLOCK;
+  const int x_end = min(w->horizontal.x_end + more_x, f->width);
+  const int y_end = min(w->horizontal.y_end + more_y, f->height);
+  for (int cy = max(w->horizontal.y_begin - more_y, 0) / BLOCK; cy * BLOCK < y_end; ++cy) {
+    for (int cx = max(w->horizontal.x_begin - more_x, 0) / BLOCK; cx * BLOCK < x_end; ++cx) {
+      if (changed[(size_t)cy * f->blocks_x + cx]) return 1;
     }
   }
   return 0;
 }
 
-// `changed`: of each cell, whether it is another one than in the frame before, whose light is held; not looked at
+// `changed`: of each block, whether it is another one than in the frame before, whose light is held; not looked at
 // unless `reuses`.
 static inline int scatter_tile(const struct FrameParams* f, const Inputs* in, const Outputs* out, const Tables* tables,
-                               global const struct CellParams* cells, int tile, global uchar* memory,
-                               size_t across_plane, size_t down_plane, int copies, int skips, int reuses,
-                               global const uchar* changed, global float* held, int* bad_pixels) {
+                               global const struct BlockParams* blocks, int tile, global uchar* memory,
+                               size_t horizontal_plane, size_t vertical_plane, int copies, int skips, int reuses,
+                               global const uchar* changed, global float* deferred, int* bad_pixels) {
   const int x_begin = tile % f->tiles_x * f->tile_width;
   const int x_end = min(x_begin + f->tile_width, f->width);
   const int y_begin = tile / f->tiles_x * f->tile_height;
   const int y_end = min(y_begin + f->tile_height, f->height);
   int scattered = 0;
   int narrow = 0;
-  for (int cy = y_begin / CELL; cy * CELL < y_end; ++cy) {
-    for (int cx = x_begin / CELL; cx * CELL < x_end; ++cx) {
-      global const struct CellParams* cell = cells + (size_t)cy * f->cells_x + cx;
-      scattered += cell->scattered;
-      narrow += cell->narrow;
+  for (int cy = y_begin / BLOCK; cy * BLOCK < y_end; ++cy) {
+    for (int cx = x_begin / BLOCK; cx * BLOCK < x_end; ++cx) {
+      global const struct BlockParams* block = blocks + (size_t)cy * f->blocks_x + cx;
+      scattered += block->scattered;
+      narrow += block->narrow;
     }
   }
   if (scattered == 0) {
     if (copies) copy_pixels(f, in, out, narrow > 0, x_begin, x_end, y_begin, y_end);
     return narrow > 0 ? TILE_NARROW : TILE_WITHOUT_MATERIAL;
   }
-  const Windows w = windows_of(f, tables, x_begin, x_end, y_begin, y_end, memory, across_plane, down_plane);
+  const Windows w = windows_of(f, tables, x_begin, x_end, y_begin, y_end, memory, horizontal_plane, vertical_plane);
   if (reuses && !any_changed(f, &w, changed)) return TILE_REUSED;
-  const Sight sight = scatter_rows(&w, f, in, out, tables, copies, skips, held);
-  *bad_pixels += sight.bad_pixels;
-  if (skips && sight.last_varied < w.y_begin) {
-    return sight.light[0] == 0.0f && sight.light[1] == 0.0f && sight.light[2] == 0.0f ? TILE_UNLIT : TILE_UNIFORM;
+  const LightSummary light_summary = scatter_rows(&w, f, in, out, tables, copies, skips, deferred);
+  *bad_pixels += light_summary.bad_pixels;
+  if (skips && light_summary.last_varied < w.y_begin) {
+    return light_summary.light[0] == 0.0f && light_summary.light[1] == 0.0f && light_summary.light[2] == 0.0f
+               ? TILE_UNLIT
+               : TILE_UNIFORM;
   }
-  return TILE_FLAT + max(w.shape_across, w.shape_down);
+  return TILE_FLAT + max(w.class_horizontal, w.class_vertical);
 }
 
 // How long a frame takes with tiles of a height, in units of that without losses. The horizontal pass, half of the
@@ -137,13 +145,13 @@ static inline void fit_tiles(struct FrameParams* f, int workers, int scattered, 
 }
 
 kernel void scatter(struct FrameParams f, global const struct MaterialParams* materials,
-                    global const struct TermParams* terms, global const struct RungParams* rungs,
+                    global const struct TermParams* terms, global const struct TapLevelParams* levels,
                     global const int* offsets, global const struct WeightParams* weights,
                     global const struct FlatWeight* flat_weights, global const struct SmoothWeight* smooth_weights,
                     global const struct RotationParams* rotations,
                     uint seed,                                                                              //
-                    global const uchar* surface, global const struct CellParams* cells,                     //
-                    global const struct CellPasses* passes,                                                 //
+                    global const uchar* material_ids, global const struct BlockParams* blocks,              //
+                    global const struct BlockPasses* passes,                                                //
                     global const uchar* light, struct ImageParams light_at,                                 //
                     global const uchar* albedo, struct ImageParams albedo_at,                               //
                     global const uchar* depth, struct ImageParams depth_at,                                 //
@@ -152,13 +160,13 @@ kernel void scatter(struct FrameParams f, global const struct MaterialParams* ma
                     global const uchar* beauty, struct ImageParams beauty_at,                               //
                     global uchar* scattered, struct ImageParams scattered_at, int writes_scattered,         //
                     global uchar* result, struct ImageParams result_at, int writes_result, int zeroes_bad,  //
-                    int copies, int skips, int holds, global float* held, int reuses, global const uchar* changed,
-                    global uchar* memory, long across_plane, long down_plane, int workers, global uchar* kinds,
+                    int copies, int skips, int defers, global float* deferred, int reuses, global const uchar* changed,
+                    global uchar* memory, long horizontal_plane, long vertical_plane, int workers, global uchar* kinds,
                     global volatile int* counters) {
-  const Inputs in = {light, albedo, depth, mask, matte, light_at, albedo_at, depth_at, mask_at, matte_at, surface};
+  const Inputs in = {light, albedo, depth, mask, matte, light_at, albedo_at, depth_at, mask_at, matte_at, material_ids};
   const Outputs out = {beauty,    scattered,        result,        beauty_at, scattered_at,
                        result_at, writes_scattered, writes_result, zeroes_bad};
-  const Tables tables = {materials,    terms,          rungs,     offsets, weights,
+  const Tables tables = {materials,    terms,          levels,    offsets, weights,
                          flat_weights, smooth_weights, rotations, passes,  seed};
   fit_tiles(&f, workers, atomic_add(counters + COUNTER_SCATTERED, 0), atomic_add(counters + COUNTER_REACH, 0));
   atomic_xchg(counters + COUNTER_TILE_HEIGHT, f.tile_height);
@@ -169,14 +177,15 @@ kernel void scatter(struct FrameParams f, global const struct MaterialParams* ma
     if (!own_memory) {
       const int worker = atomic_inc(counters + COUNTER_WORKERS);
       if (worker >= workers) return;
-      const size_t band_bytes = 3 * BAND * (size_t)((f.tile_width + CELL - 1) & ~(CELL - 1)) * sizeof(float);
-      own_memory = memory + worker * (window_bytes(across_plane, 1) + window_bytes(down_plane, TERMS) + band_bytes +
-                                      across_plane / CELL * sizeof(struct ChoiceParams) + down_plane);
+      const size_t strip_bytes = 3 * STRIP_ROWS * (size_t)((f.tile_width + BLOCK - 1) & ~(BLOCK - 1)) * sizeof(float);
+      own_memory =
+          memory + worker * (window_bytes(horizontal_plane, 1) + window_bytes(vertical_plane, TERMS) + strip_bytes +
+                             horizontal_plane / BLOCK * sizeof(struct ChoiceParams) + vertical_plane);
     }
     const int tile = atomic_inc(counters + COUNTER_NEXT_TILE);
     if (tile >= f.tiles_x * f.tiles_y) break;
-    kinds[tile] = scatter_tile(&f, &in, &out, &tables, cells, tile, own_memory, across_plane, down_plane,
-                               copies && !holds, skips, reuses, changed, holds ? held : 0, &bad);
+    kinds[tile] = scatter_tile(&f, &in, &out, &tables, blocks, tile, own_memory, horizontal_plane, vertical_plane,
+                               copies && !defers, skips, reuses, changed, defers ? deferred : 0, &bad);
   }
   if (bad > 0) atomic_add(counters + COUNTER_BAD, bad);
 }

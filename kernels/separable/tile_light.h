@@ -8,15 +8,15 @@ typedef struct {
   int bad_pixels;   // of the tile itself
   int last_varied;  // row: the last one where not all light is that of the first pixel
   int last_bad;     // - that is not finite everywhere
-} Sight;
+} LightSummary;
 
-static inline void find_first(Sight* sight, const LoadedLight* loaded) {
-#define FIRST_LANE(lane)                                        \
-  if (!sight->has_first && LANE(loaded->material, lane) != 0) { \
-    sight->light[0] = LANE(loaded->light.r, lane);              \
-    sight->light[1] = LANE(loaded->light.g, lane);              \
-    sight->light[2] = LANE(loaded->light.b, lane);              \
-    sight->has_first = 1;                                       \
+static inline void find_first(LightSummary* light_summary, const LoadedLight* loaded) {
+#define FIRST_LANE(lane)                                                \
+  if (!light_summary->has_first && LANE(loaded->material, lane) != 0) { \
+    light_summary->light[0] = LANE(loaded->light.r, lane);              \
+    light_summary->light[1] = LANE(loaded->light.g, lane);              \
+    light_summary->light[2] = LANE(loaded->light.b, lane);              \
+    light_summary->has_first = 1;                                       \
   }
   EACH_LANE(FIRST_LANE)
 #undef FIRST_LANE
@@ -29,46 +29,46 @@ static inline void find_first(Sight* sight, const LoadedLight* loaded) {
 // A row that is read later.
 typedef struct {
   RgbRow light;
-  global const uchar* surface;
+  global const uchar* material_ids;
 } LaterRow;
 
 static inline LaterRow later_row(const Windows* w, const struct FrameParams* f, const Inputs* in, int y) {
-  const int later_y = min(y + ROWS_AHEAD, w->across.y_end - 1);
+  const int later_y = min(y + ROWS_AHEAD, w->horizontal.y_end - 1);
   const LaterRow row = {rgb_row_of(in->light, &in->light_at, f->width, later_y),
-                        in->surface + surface_at(f, 0, later_y)};
+                        in->material_ids + surface_at(f, 0, later_y)};
   return row;
 }
 
 FORCED_INLINE void fetch_later(const LaterRow* row, int x) {
   fetch_rgb_ahead(&row->light, x);
-  fetch_ahead(row->surface, 1, x);
+  fetch_ahead(row->material_ids, 1, x);
 }
 
-FORCED_INLINE vint differing(const Sight* sight, vrgb light) {
-  return (as_vint(light.r) ^ as_vint((vfloat)(sight->light[0]))) |
-         (as_vint(light.g) ^ as_vint((vfloat)(sight->light[1]))) |
-         (as_vint(light.b) ^ as_vint((vfloat)(sight->light[2])));
+FORCED_INLINE vint differing(const LightSummary* light_summary, vrgb light) {
+  return (as_vint(light.r) ^ as_vint((vfloat)(light_summary->light[0]))) |
+         (as_vint(light.g) ^ as_vint((vfloat)(light_summary->light[1]))) |
+         (as_vint(light.b) ^ as_vint((vfloat)(light_summary->light[2])));
 }
 
 // Light of some pixels of one row of the horizontal pass's window, of any images, anywhere. Returns the lanes that
 // differ from the first one.
-SHARED vint load_light_run(Sight* sight, const Windows* w, const struct FrameParams* f, const InputRows* rows,
-                           int x_begin, int x_end, int y) {
+SHARED vint load_light_run(LightSummary* light_summary, const Windows* w, const struct FrameParams* f,
+                           const InputRows* rows, int x_begin, int x_end, int y) {
   const int is_own = y >= w->own_y_begin && y < w->own_y_end;
   vint varied = (vint)(0);
   for (int x = x_begin; x < x_end; x += V) {
-    const LoadedLight loaded = load_light(&w->across, f, rows, x, y);
+    const LoadedLight loaded = load_light(&w->horizontal, f, rows, x, y);
     if (any_bit(loaded.bad)) {
-      sight->last_bad = y;
+      light_summary->last_bad = y;
       if (is_own && x >= w->own_x_begin && x < w->own_x_end) {
-#define COUNT_LANE(lane) sight->bad_pixels -= LANE(loaded.bad, lane);
+#define COUNT_LANE(lane) light_summary->bad_pixels -= LANE(loaded.bad, lane);
         EACH_LANE(COUNT_LANE)
 #undef COUNT_LANE
       }
     }
     const vint there = AS_MASK(loaded.material != 0);
-    if (!sight->has_first && any_bit(there)) find_first(sight, &loaded);
-    varied |= differing(sight, loaded.light) & there;
+    if (!light_summary->has_first && any_bit(there)) find_first(light_summary, &loaded);
+    varied |= differing(light_summary, loaded.light) & there;
   }
   return varied;
 }
@@ -76,49 +76,49 @@ SHARED vint load_light_run(Sight* sight, const Windows* w, const struct FramePar
 // The same of planes of floats in the frame, after the first light was found and if there is no albedo: without a
 // branch and without a call, before which registers would be saved. Returns whether some light is not finite: then it
 // is to be done again by the other.
-FORCED_INLINE int load_planar_run(const Sight* sight, const Windows* w, const InputRows* rows, int x_begin, int x_end,
-                                  int y, vint* varied) {
-  const Window across = w->across;
+FORCED_INLINE int load_planar_run(const LightSummary* light_summary, const Windows* w, const InputRows* rows,
+                                  int x_begin, int x_end, int y, vint* varied) {
+  const Window horizontal = w->horizontal;
   vint bad = (vint)(0);
   for (int x = x_begin; x < x_end; x += V) {
-    const size_t at = pixel_at(&across, x, y);
-    const vint m = load_bytes(rows->surface + x);
+    const size_t at = pixel_at(&horizontal, x, y);
+    const vint m = load_bytes(rows->material_ids + x);
     const vrgb value = read_planar_rgb(&rows->light, x);
     const vint there = AS_MASK(m != 0);
     const vint good = is_finite(value);
-    const vrgb light = keep_rgb(there & good, value);
-    store_rgb(across.light, across.plane, at, light);
-    store_bytes(across.material + at, m & good);
+    const vrgb light = select_or_zero_rgb(there & good, value);
+    store_rgb(horizontal.light, horizontal.plane, at, light);
+    store_bytes(horizontal.material + at, m & good);
     bad |= there & ~good;
-    *varied |= differing(sight, light) & there;
+    *varied |= differing(light_summary, light) & there;
   }
   return any_bit(bad);
 }
 
 // Light of one row of the horizontal pass's window.
-SHARED void load_light_row(Sight* sight, const Windows* w, const struct FrameParams* f, const Inputs* in,
+SHARED void load_light_row(LightSummary* light_summary, const Windows* w, const struct FrameParams* f, const Inputs* in,
                            Columns columns, int y) {
   const InputRows rows = input_rows(f, in, y);
   int planar_begin = columns.begin;
   int planar_end = columns.begin;
 #if V > 1 && !HAS_ALBEDO
-  if (rows.light.planar && sight->has_first) {
+  if (rows.light.planar && light_summary->has_first) {
     planar_begin = max(columns.begin, 0);
     planar_end = max(min(columns.end, f->width / V * V), planar_begin);
   }
 #endif
-  vint varied = load_light_run(sight, w, f, &rows, columns.begin, planar_begin, y);
+  vint varied = load_light_run(light_summary, w, f, &rows, columns.begin, planar_begin, y);
   vint varied_planar = (vint)(0);
-  if (load_planar_run(sight, w, &rows, planar_begin, planar_end, y, &varied_planar)) {
-    varied_planar = load_light_run(sight, w, f, &rows, planar_begin, planar_end, y);
+  if (load_planar_run(light_summary, w, &rows, planar_begin, planar_end, y, &varied_planar)) {
+    varied_planar = load_light_run(light_summary, w, f, &rows, planar_begin, planar_end, y);
   }
-  varied |= varied_planar | load_light_run(sight, w, f, &rows, planar_end, columns.end, y);
-  if (any_bit(varied)) sight->last_varied = y;
+  varied |= varied_planar | load_light_run(light_summary, w, f, &rows, planar_end, columns.end, y);
+  if (any_bit(varied)) light_summary->last_varied = y;
 
-  if (y >= w->down.y_begin && y < w->down.y_end) {
+  if (y >= w->vertical.y_begin && y < w->vertical.y_end) {
     for (int x = max(columns.begin, w->x_begin); x < min(columns.end, w->x_end); x += V) {
-      store_bytes(w->down.material + pixel_at(&w->down, x, y),
-                  load_bytes(w->across.material + pixel_at(&w->across, x, y)));
+      store_bytes(w->vertical.material + pixel_at(&w->vertical, x, y),
+                  load_bytes(w->horizontal.material + pixel_at(&w->horizontal, x, y)));
     }
   }
   // What lies between is fetched bit by bit beside the horizontal pass.

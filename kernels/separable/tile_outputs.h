@@ -82,26 +82,26 @@ SHARED void copy_pixels(const struct FrameParams* f, const Inputs* in, const Out
 #endif
   for (int y = y_begin; y < y_end; ++y) {
     const InputRows rows = input_rows(f, in, y);
-    for (int x = x_begin; x < x_end; x += V) compose(f, in, &rows, out, same_rgb((vfloat)(0.0f)), 0, x, y);
+    for (int x = x_begin; x < x_end; x += V) compose(f, in, &rows, out, broadcast_rgb((vfloat)(0.0f)), 0, x, y);
   }
 }
 
-// Where light after both passes goes if the outputs are to be composed of it: a band of a tile.
-static inline Planes band_of(const Windows* w, int y_begin) {
-  const size_t row_stride = (w->own_x_end - w->own_x_begin + CELL - 1) & ~(CELL - 1);
-  Planes band;
-  band.r = w->band - y_begin * row_stride - w->own_x_begin;
-  band.g = band.r + BAND * row_stride;
-  band.b = band.g + BAND * row_stride;
-  band.row_stride = row_stride;
-  return band;
+// Where light after both passes goes if the outputs are to be composed of it: a strip of a tile.
+static inline Planes strip_of(const Windows* w, int y_begin) {
+  const size_t row_stride = (w->own_x_end - w->own_x_begin + BLOCK - 1) & ~(BLOCK - 1);
+  Planes strip;
+  strip.r = w->strip - y_begin * row_stride - w->own_x_begin;
+  strip.g = strip.r + STRIP_ROWS * row_stride;
+  strip.b = strip.g + STRIP_ROWS * row_stride;
+  strip.row_stride = row_stride;
+  return strip;
 }
 
 // Where it goes if it is the output.
-static inline Planes output_of(const struct FrameParams* f, const Outputs* out, global float* held) {
+static inline Planes output_of(const struct FrameParams* f, const Outputs* out, global float* deferred) {
   Planes planes = {0, 0, 0, 0};
-  if (held) {
-    planes.r = held + PADDING;
+  if (deferred) {
+    planes.r = deferred + PADDING;
     planes.g = planes.r + (size_t)f->stride * f->height;
     planes.b = planes.g + (size_t)f->stride * f->height;
     planes.row_stride = f->stride;
@@ -118,24 +118,24 @@ static inline Planes output_of(const struct FrameParams* f, const Outputs* out, 
   return planes;
 }
 
-// The outputs of some pixels of a tile: `uniform`, or what is in the band.
-static inline void compose_band(const Windows* w, const struct FrameParams* f, const Inputs* in, const Outputs* out,
-                                const vrgb* uniform, int all_finite, global float* held, const Planes* band,
-                                int x_begin, int x_end, int y_begin, int y_end) {
+// The outputs of some pixels of a tile: `uniform`, or what is in the strip.
+static inline void compose_strip(const Windows* w, const struct FrameParams* f, const Inputs* in, const Outputs* out,
+                                 const vrgb* uniform, int all_finite, global float* deferred, const Planes* strip,
+                                 int x_begin, int x_end, int y_begin, int y_end) {
   for (int y = y_begin; y < y_end; ++y) {
     const InputRows rows = input_rows(f, in, y);
     for (int x = x_begin; x < x_end; x += V) {
-      const size_t at = y * band->row_stride + x;
+      const size_t at = y * strip->row_stride + x;
       vrgb after;
       if (uniform) {
         after = *uniform;
       } else {
-        after.r = load_floats(band->r + at);
-        after.g = load_floats(band->g + at);
-        after.b = load_floats(band->b + at);
+        after.r = load_floats(strip->r + at);
+        after.g = load_floats(strip->g + at);
+        after.b = load_floats(strip->b + at);
       }
-      if (held) {
-        store_rgb(held, (size_t)f->stride * f->height, surface_at(f, x, y), after);
+      if (deferred) {
+        store_rgb(deferred, (size_t)f->stride * f->height, surface_at(f, x, y), after);
       } else {
         compose(f, in, &rows, out, after, all_finite, x, y);
       }

@@ -42,7 +42,7 @@ SHARED Texels read_texels(const struct TextureParams* t, const TextureImages* in
   texels.object &= finite_rgb(texels.light) & finite_rgb(texels.albedo);
   if (t->albedo_mix != 0.0f) texels.light = product(texels.light, albedo_power(texels.albedo, t->albedo_mix));
 #else
-  texels.albedo = same_rgb((vfloat)(1.0f));
+  texels.albedo = broadcast_rgb((vfloat)(1.0f));
 #endif
   texels.object &= finite_rgb(texels.light);
 #if HAS_MASK
@@ -55,7 +55,7 @@ SHARED Texels read_texels(const struct TextureParams* t, const TextureImages* in
 #else
   texels.stretch_u = texels.stretch_v = (vfloat)(t->mm_per_texel);
 #endif
-  texels.light = keep_rgb(texels.object, texels.light);
+  texels.light = select_or_zero_rgb(texels.object, texels.light);
   return texels;
 }
 

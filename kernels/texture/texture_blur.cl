@@ -144,7 +144,7 @@ static vfloat from_light(const struct BlurParams* blur, global const float* p, i
   vfloat sum = norm * load_floats(p);
   for (int o = 1; o <= most; ++o) {
     const vfloat above = erf_tail(((float)o + 0.5f) * scale);
-    const vfloat weight = keep(AS_MASK(taps >= (vint)(o)), below - above);
+    const vfloat weight = select_or_zero(AS_MASK(taps >= (vint)(o)), below - above);
     sum = fma(weight, both_taps(p, along, runs, (vint)(o), same), sum);
     norm = fma(weight, (vfloat)(2.0f), norm);
     below = above;
@@ -157,7 +157,7 @@ static vfloat from_last(const struct BlurParams* blur, global const float* p, in
   const float deviation = blur->deviation_mm;
   const vfloat mm = fmax(stretch, (vfloat)(deviation * (1.0f / MOST_TEXELS)));
   const vint step = steps_within(mm, (vfloat)(SPACING * deviation));
-  const vfloat step_mm = as_floats(step) * mm;
+  const vfloat step_mm = convert_vfloat(step) * mm;
   const vint taps = steps_beyond(step_mm, (vfloat)(REACH * deviation));
   const vfloat exponent = 0.5f * (step_mm * step_mm) / blur->variance_mm2;
   const int most = highest_lane(taps);
@@ -165,7 +165,7 @@ static vfloat from_last(const struct BlurParams* blur, global const float* p, in
   vfloat sum = load_floats(p);
   vfloat norm = (vfloat)(1.0f);
   for (int o = 1; o <= most; ++o) {
-    const vfloat weight = keep(AS_MASK(taps >= (vint)(o)), exp_of_minus(exponent * ((float)o * (float)o)));
+    const vfloat weight = select_or_zero(AS_MASK(taps >= (vint)(o)), exp_of_minus(exponent * ((float)o * (float)o)));
     sum = fma(weight, both_taps(p, along, runs, step * o, same), sum);
     norm = fma(weight, (vfloat)(2.0f), norm);
   }
@@ -254,7 +254,7 @@ kernel void texture_blur(struct TextureParams t, global const struct BlurParams*
           its_stretch = select(its_stretch, read_values(row_of(stretch, &stretch_at, t.width, y, 0), x), runs.object);
 #endif
           if (any_bit(runs.object)) {
-            value = keep(runs.object, blurred(&blur, weights, source + at, along, &runs, its_stretch));
+            value = select_or_zero(runs.object, blurred(&blur, weights, source + at, along, &runs, its_stretch));
           }
         }
         store_floats(target + at, value);

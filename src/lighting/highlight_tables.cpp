@@ -5,8 +5,8 @@
 #include <numbers>
 #include <string>
 
-#include "opencl/linear_table.hpp"
 #include "dermis/error.hpp"
+#include "opencl/linear_table.hpp"
 #include "profile/quadrature.hpp"
 
 namespace dermis {

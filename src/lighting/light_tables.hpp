@@ -4,9 +4,9 @@
 #include <span>
 #include <vector>
 
+#include "dermis/lights.hpp"
 #include "opencl/opencl.hpp"
 #include "opencl/params.hpp"
-#include "dermis/lights.hpp"
 
 namespace dermis {
 

@@ -6,9 +6,9 @@
 #include <numbers>
 #include <string>
 
-#include "opencl/device_cache.hpp"
 #include "lighting/highlight_tables.hpp"
 #include "lighting/light_tables.hpp"
+#include "opencl/device_cache.hpp"
 #include "opencl/pixel_stage.hpp"
 #include "opencl/program.hpp"
 
@@ -85,9 +85,10 @@ Shading::Shading(const Device& device, const ShadingOptions& options) {
                                 build_constant("TABLE_SHIFT", 23 - log2_nodes_per_octave_of_lobes);
   state_ = with_device_errors([&] {
     const cl::Context context(device.context(), true);
-    return std::make_unique<State>(State{
-        device, options, build_program(device, {"lighting/shadow_maps.cl", "lighting/shade.cl"}, constants), tables.beckmann,
-        upload_rows(context, tables.nodes), upload_rows(context, tables.reflected), 1 / (1 - tables.mean_reflected)});
+    return std::make_unique<State>(
+        State{device, options, build_program(device, {"lighting/shadow_maps.cl", "lighting/shade.cl"}, constants),
+              tables.beckmann, upload_rows(context, tables.nodes), upload_rows(context, tables.reflected),
+              1 / (1 - tables.mean_reflected)});
   });
 }
 

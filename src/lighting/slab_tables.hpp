@@ -4,8 +4,8 @@
 #include <array>
 #include <vector>
 
-#include "opencl/params.hpp"
 #include "dermis/plan.hpp"
+#include "opencl/params.hpp"
 
 namespace dermis {
 

@@ -4,12 +4,12 @@
 #include <array>
 #include <string>
 
-#include "screen/check_materials.hpp"
-#include "opencl/device_cache.hpp"
 #include "lighting/light_tables.hpp"
+#include "lighting/slab_tables.hpp"
+#include "opencl/device_cache.hpp"
 #include "opencl/pixel_stage.hpp"
 #include "opencl/program.hpp"
-#include "lighting/slab_tables.hpp"
+#include "screen/check_materials.hpp"
 
 namespace dermis {
 
@@ -96,9 +96,9 @@ Translucency::Translucency(const Device& device, const std::vector<Material>& ma
   const SlabTables tables = make_slab_tables(materials);
   state_ = with_device_errors([&] {
     const cl::Context context(device.context(), true);
-    return std::make_unique<State>(State{device, frames, options,
-                                         build_program(device, {"lighting/shadow_maps.cl", "lighting/transmit.cl"}, constants),
-                                         upload_rows(context, tables.materials), upload_rows(context, tables.nodes)});
+    return std::make_unique<State>(State{
+        device, frames, options, build_program(device, {"lighting/shadow_maps.cl", "lighting/transmit.cl"}, constants),
+        upload_rows(context, tables.materials), upload_rows(context, tables.nodes)});
   });
 }
 

@@ -1,9 +1,9 @@
 // What the rest of the library needs of a Device.
 #pragma once
 
+#include "dermis/device.hpp"
 #include "opencl/device_cache.hpp"
 #include "opencl/opencl.hpp"
-#include "dermis/device.hpp"
 
 namespace dermis {
 

@@ -19,11 +19,11 @@ cl::CommandQueue DeviceCache::queue(const Device& device) {
 }
 
 std::size_t DeviceCache::bytes_of(const Taps& taps) {
-  std::size_t sum = sizeof(Taps) + bytes(taps.terms) + bytes(taps.rungs);
-  for (const Rung& rung : taps.rungs) {
-    sum += bytes(rung.core_gain) + bytes(rung.offsets_px) + bytes(rung.weights);
-    for (const auto& weights : rung.flat_weights) sum += bytes(weights);
-    sum += bytes(rung.stretch_weights) + bytes(rung.skew_weights);
+  std::size_t sum = sizeof(Taps) + bytes(taps.terms) + bytes(taps.levels);
+  for (const TapLevel& level : taps.levels) {
+    sum += bytes(level.centre_gain) + bytes(level.offsets_px) + bytes(level.weights);
+    for (const auto& weights : level.flat_weights) sum += bytes(weights);
+    sum += bytes(level.stretch_weights) + bytes(level.skew_weights);
   }
   return sum;
 }

@@ -5,11 +5,11 @@
 #include <mutex>
 #include <string>
 
-#include "opencl/opencl.hpp"
-#include "opencl/recent.hpp"
 #include "dermis/device.hpp"
 #include "dermis/profile.hpp"
 #include "dermis/taps.hpp"
+#include "opencl/opencl.hpp"
+#include "opencl/recent.hpp"
 
 namespace dermis {
 
@@ -24,7 +24,7 @@ struct DeviceCache {
   /// By files and build options. A program holds a few MB of code; a caller who changes options, or what its frames
   /// hold, comes by a handful of them.
   Recent<std::string, cl::Program> programs{16, [](const cl::Program&) { return 1; }};
-  /// A usual ladder takes 0.7 MB, so ninety fit.
+  /// A usual level table takes 0.7 MB, so ninety fit.
   Recent<FitKey, std::shared_ptr<const Taps>> taps{std::size_t{64} << 20,
                                                    [](const auto& its) { return bytes_of(*its); }};
   /// The designs with the ranks that were found for them.

@@ -6,9 +6,9 @@
 #include <type_traits>
 #include <vector>
 
+#include "dermis/frame.hpp"
 #include "opencl/opencl.hpp"
 #include "opencl/params.hpp"
-#include "dermis/frame.hpp"
 
 namespace dermis {
 

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "opencl/opencl.hpp"
 #include "dermis/device.hpp"
+#include "opencl/opencl.hpp"
 
 namespace dermis {
 

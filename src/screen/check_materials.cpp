@@ -4,8 +4,8 @@
 #include <set>
 #include <string>
 
-#include "opencl/params.hpp"
 #include "dermis/error.hpp"
+#include "opencl/params.hpp"
 
 namespace dermis {
 

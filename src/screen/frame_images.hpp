@@ -3,8 +3,8 @@
 
 #include <array>
 
-#include "opencl/image_buffers.hpp"
 #include "dermis/plan.hpp"
+#include "opencl/image_buffers.hpp"
 
 namespace dermis {
 

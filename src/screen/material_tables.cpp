@@ -9,8 +9,8 @@
 #include <memory>
 
 #include "opencl/device_cache.hpp"
-#include "screen/disc_tables.hpp"
 #include "opencl/linear_table.hpp"
+#include "screen/disc_tables.hpp"
 
 namespace dermis {
 
@@ -31,70 +31,70 @@ params::OctavesParams octaves_params(const RadialTable& table) {
   return row;
 }
 
-void append_smooth_weights(const Rung& rung, std::size_t terms, std::size_t terms_per_material,
+void append_smooth_weights(const TapLevel& level, std::size_t terms, std::size_t terms_per_material,
                            MaterialTables& tables) {
-  const auto& flat_weights = rung.flat_weights[RUNG_PARTS / 2];
-  for (std::size_t row = 0; row <= rung.offsets_px.size(); ++row) {
+  const auto& flat_weights = level.flat_weights[LEVEL_PARTS / 2];
+  for (std::size_t row = 0; row <= level.offsets_px.size(); ++row) {
     for (std::size_t t = 0; t < terms_per_material; ++t) {
       params::SmoothWeight its{};
       if (t < terms) {
         std::copy_n(flat_weights[row * terms + t].begin(), 3, its.rgb);
-        std::copy_n(rung.stretch_weights[row * terms + t].begin(), 3, its.stretch);
-        if (row > 0) std::copy_n(rung.skew_weights[(row - 1) * terms + t].begin(), 3, its.skew);
+        std::copy_n(level.stretch_weights[row * terms + t].begin(), 3, its.stretch);
+        if (row > 0) std::copy_n(level.skew_weights[(row - 1) * terms + t].begin(), 3, its.skew);
       }
       tables.smooth_weights.push_back(its);
     }
   }
 }
 
-/// How many pairs of a rung have a weight in a channel, from the first on.
-std::array<int, 3> channel_pairs(const Rung& rung, std::size_t terms) {
+/// How many pairs of a level have a weight in a channel, from the first on.
+std::array<int, 3> channel_pairs(const TapLevel& level, std::size_t terms) {
   std::array<int, 3> pairs{};
-  for (std::size_t at = terms; at < rung.stretch_weights.size(); ++at) {
+  for (std::size_t at = terms; at < level.stretch_weights.size(); ++at) {
     for (int c = 0; c < 3; ++c) {
-      bool has_weight = rung.stretch_weights[at][c] != 0 || rung.skew_weights[at - terms][c] != 0;
-      for (const auto& weights : rung.flat_weights) has_weight = has_weight || weights[at][c] != 0;
+      bool has_weight = level.stretch_weights[at][c] != 0 || level.skew_weights[at - terms][c] != 0;
+      for (const auto& weights : level.flat_weights) has_weight = has_weight || weights[at][c] != 0;
       if (has_weight) pairs[c] = static_cast<int>(at / terms);
     }
   }
   return pairs;
 }
 
-void append_rung(const Rung& rung, const Taps& taps, double jitter, std::size_t terms_per_material,
-                 MaterialTables& tables) {
-  const double rotated_px = jitter * rung.footprint * taps.radius_mm;
-  const auto rotated = jitter > 0 ? std::count_if(rung.offsets_px.begin(), rung.offsets_px.end(),
+void append_level(const TapLevel& level, const Taps& taps, double jitter, std::size_t terms_per_material,
+                  MaterialTables& tables) {
+  const double rotated_px = jitter * level.px_per_mm * taps.radius_mm;
+  const auto rotated = jitter > 0 ? std::count_if(level.offsets_px.begin(), level.offsets_px.end(),
                                                   [&](int offset_px) { return offset_px <= rotated_px; })
                                   : 0;
-  const int last_px = rung.offsets_px.empty() ? 0 : rung.offsets_px.back();
+  const int last_px = level.offsets_px.empty() ? 0 : level.offsets_px.back();
   tables.farthest_px = std::max(tables.farthest_px, last_px);
-  const auto [red_pairs, green_pairs, blue_pairs] = channel_pairs(rung, taps.terms.size());
-  tables.rungs.push_back({rung.footprint,
-                          rung.core_half_width_px,
-                          static_cast<int>(tables.offsets_px.size()),
-                          static_cast<int>(rung.offsets_px.size()),
-                          {red_pairs, green_pairs, blue_pairs},
-                          static_cast<int>(rotated),
-                          static_cast<int>(tables.weights.size()),
-                          static_cast<int>(tables.flat_weights.size()),
-                          static_cast<int>(tables.smooth_weights.size()),
-                          last_px});
-  tables.offsets_px.insert(tables.offsets_px.end(), rung.offsets_px.begin(), rung.offsets_px.end());
+  const auto [red_pairs, green_pairs, blue_pairs] = channel_pairs(level, taps.terms.size());
+  tables.levels.push_back({level.px_per_mm,
+                           level.centre_half_width_px,
+                           static_cast<int>(tables.offsets_px.size()),
+                           static_cast<int>(level.offsets_px.size()),
+                           {red_pairs, green_pairs, blue_pairs},
+                           static_cast<int>(rotated),
+                           static_cast<int>(tables.weights.size()),
+                           static_cast<int>(tables.flat_weights.size()),
+                           static_cast<int>(tables.smooth_weights.size()),
+                           last_px});
+  tables.offsets_px.insert(tables.offsets_px.end(), level.offsets_px.begin(), level.offsets_px.end());
   const std::size_t terms = taps.terms.size();
-  for (std::size_t row = 0; row <= rung.offsets_px.size(); ++row) {
+  for (std::size_t row = 0; row <= level.offsets_px.size(); ++row) {
     for (std::size_t t = 0; t < terms_per_material; ++t) {
       params::WeightParams its{};
       if (t < terms) {
-        const TapWeight weight = row == 0 ? TapWeight{rung.core_gain[t], {}} : rung.weights[(row - 1) * terms + t];
+        const TapWeight weight = row == 0 ? TapWeight{level.centre_gain[t], {}} : level.weights[(row - 1) * terms + t];
         std::copy(weight.length_mm.begin(), weight.length_mm.end(), its.length_mm);
         std::copy(weight.share.begin(), weight.share.end(), its.share);
       }
       tables.weights.push_back(its);
     }
   }
-  static_assert(std::tuple_size_v<decltype(rung.flat_weights)> == RUNG_PARTS);
-  for (const auto& weights : rung.flat_weights) {
-    for (std::size_t row = 0; row <= rung.offsets_px.size(); ++row) {
+  static_assert(std::tuple_size_v<decltype(level.flat_weights)> == LEVEL_PARTS);
+  for (const auto& weights : level.flat_weights) {
+    for (std::size_t row = 0; row <= level.offsets_px.size(); ++row) {
       for (std::size_t t = 0; t < terms_per_material; ++t) {
         params::FlatWeight its{};
         if (t < terms) std::copy_n(weights[row * terms + t].begin(), 3, its.rgb);
@@ -102,7 +102,7 @@ void append_rung(const Rung& rung, const Taps& taps, double jitter, std::size_t 
       }
     }
   }
-  append_smooth_weights(rung, terms, terms_per_material, tables);
+  append_smooth_weights(level, terms, terms_per_material, tables);
 }
 
 void append_terms(const Taps& taps, std::size_t terms_per_material, MaterialTables& tables) {
@@ -112,7 +112,7 @@ void append_terms(const Taps& taps, std::size_t terms_per_material, MaterialTabl
     std::copy(term.sum.begin(), term.sum.end(), row.sum);
     row.normalised = term.normalised ? 1 : 0;
     row.falloff = octaves_params(term.falloff);
-    row.core = octaves_params(term.core);
+    row.centre = octaves_params(term.centre);
     tables.terms.push_back(row);
   }
   params::TermParams nothing = tables.terms.back();
@@ -182,10 +182,10 @@ MaterialTables make_material_tables(const Device& device, const std::vector<Mate
     std::copy(taps.relative_width.begin(), taps.relative_width.end(), row.relative_width);
     row.width_follows_albedo = profile.width_follows_albedo() ? 1 : 0;
     row.id = materials[i].id;
-    row.first_rung = static_cast<int>(tables.rungs.size());
-    row.rungs = static_cast<int>(taps.rungs.size());
+    row.first_level = static_cast<int>(tables.levels.size());
+    row.levels = static_cast<int>(taps.levels.size());
     row.first_term = static_cast<int>(tables.terms.size());
-    for (const Rung& rung : taps.rungs) append_rung(rung, taps, options.jitter, terms, tables);
+    for (const TapLevel& level : taps.levels) append_level(level, taps, options.jitter, terms, tables);
     append_terms(taps, terms, tables);
     if (options.method != Method::separable) append_exact_tables(profile, row, tables);
     if (options.method == Method::disc) {

@@ -4,9 +4,9 @@
 #include <array>
 #include <vector>
 
-#include "opencl/params.hpp"
 #include "dermis/plan.hpp"
 #include "dermis/taps.hpp"
+#include "opencl/params.hpp"
 
 namespace dermis {
 
@@ -15,7 +15,7 @@ namespace dermis {
 struct MaterialTables {
   std::vector<params::MaterialParams> materials;
   std::vector<params::TermParams> terms;
-  std::vector<params::RungParams> rungs;
+  std::vector<params::TapLevelParams> levels;
   std::vector<int> offsets_px;
   std::vector<params::WeightParams> weights;
   std::vector<params::FlatWeight> flat_weights;

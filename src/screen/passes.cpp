@@ -8,8 +8,8 @@
 #include <string>
 #include <utility>
 
-#include "screen/disc_tables.hpp"
 #include "opencl/program.hpp"
+#include "screen/disc_tables.hpp"
 
 namespace dermis {
 
@@ -24,8 +24,8 @@ params::FrameParams frame_params(const Frame& frame, const Options& options, con
   p.width = frame.width;
   p.height = frame.height;
   p.stride = sizes.stride();
-  p.cells_x = sizes.cells_x();
-  p.cells_y = sizes.cells_y();
+  p.blocks_x = sizes.blocks_x();
+  p.blocks_y = sizes.blocks_y();
   p.tile_width = sizes.tile_width;
   p.tile_height = sizes.tile_height;
   p.least_tile_height = sizes.least_tile_height;
@@ -107,7 +107,7 @@ Passes::Passes(const Plan::State& plan, const Frame& frame, const BoundImages& i
       queue_(std::move(queue)),
       params_(frame_params(frame, plan.options, memory.sizes)),
       window_{0,
-              (frame.width + CELL - 1) / CELL * CELL,
+              (frame.width + BLOCK - 1) / BLOCK * BLOCK,
               0,
               frame.height,
               std::numeric_limits<int>::max(),
@@ -121,13 +121,13 @@ Passes::Passes(const Plan::State& plan, const Frame& frame, const BoundImages& i
              !(light_is_scattered && images.in_place(ImageName::scattered, ImageName::light))) ||
             (images.has(ImageName::result) && !images.in_place(ImageName::result, ImageName::beauty)) ||
             plan.options.bad_pixels == BadPixels::zero;
-  holds_ = plan.options.bad_pixels == BadPixels::error || reuse_ != nullptr;
+  defers_ = plan.options.bad_pixels == BadPixels::error || reuse_ != nullptr;
   for (const ImageName input :
        {ImageName::light, ImageName::albedo, ImageName::depth, ImageName::mask, ImageName::matte}) {
-    holds_ = holds_ || images.output_over(input);
+    defers_ = defers_ || images.output_over(input);
   }
-  if (holds_ && reuse_ == nullptr) memory.need_held(context);
-  held_ = reuse_ != nullptr ? reuse_->held : memory.held;
+  if (defers_ && reuse_ == nullptr) memory.need_deferred(context);
+  deferred_ = reuse_ != nullptr ? reuse_->deferred : memory.deferred;
   if (plan.options.method == Method::disc) {
     auto table = disc_turns();
     rotations_ = cl::Buffer(context, CL_MEM_READ_ONLY | CL_MEM_COPY_HOST_PTR, sizeof(table), table.data());
@@ -155,30 +155,30 @@ void Passes::classify() {
   queue_.enqueueFillBuffer(memory_.counters, cl_int{0}, 0, RUN_COUNTERS * sizeof(cl_int),
                            last_.empty() ? nullptr : &last_, &cleared);
   last_ = {cleared};
-  const int cells_per_item = plan_.item_is_pixel ? 1 : params_.cells_x;
-  const int columns = plan_.item_is_pixel ? params_.cells_x : 1;
-  cl::Kernel survey(plan_.classify_program, "survey");
-  set_arguments(survey, params_, cells_per_item, plan_.materials,                          //
+  const int blocks_per_item = plan_.item_is_pixel ? 1 : params_.blocks_x;
+  const int columns = plan_.item_is_pixel ? params_.blocks_x : 1;
+  cl::Kernel classify(plan_.classify_program, "classify_blocks");
+  set_arguments(classify, params_, blocks_per_item, plan_.materials,                       //
                 images_.buffer(ImageName::albedo), images_.layout(ImageName::albedo),      //
                 images_.buffer(ImageName::depth), images_.layout(ImageName::depth),        //
                 images_.buffer(ImageName::material), images_.layout(ImageName::material),  //
                 images_.buffer(ImageName::mask), images_.layout(ImageName::mask),          //
                 images_.buffer(ImageName::matte), images_.layout(ImageName::matte),        //
-                memory_.surface, memory_.cells);
-  events_.classify.push_back(launch(survey, columns, params_.cells_y, 1));
+                memory_.material_ids, memory_.blocks);
+  events_.classify.push_back(launch(classify, columns, params_.blocks_y, 1));
   cl::Kernel choose(plan_.classify_program, "choose_passes");
-  set_arguments(choose, params_, cells_per_item, plan_.materials, plan_.rungs, memory_.cells, memory_.passes,
+  set_arguments(choose, params_, blocks_per_item, plan_.materials, plan_.levels, memory_.blocks, memory_.passes,
                 memory_.counters);
-  events_.classify.push_back(launch(choose, columns, params_.cells_y, 1));
+  events_.classify.push_back(launch(choose, columns, params_.blocks_y, 1));
   if (reuse_ != nullptr) compare_with_frame_before();
   if (!plan_.tiled) prepare();
 }
 
 void Passes::compare_with_frame_before() {
   const cl::Program program =
-      build_program(plan_.device, {"classify/fingerprint.cl"}, plan_.build_options + " -DV=" + std::to_string(CELL));
+      build_program(plan_.device, {"classify/fingerprint.cl"}, plan_.build_options + " -DV=" + std::to_string(BLOCK));
   cl::Kernel kernel(program, "fingerprint");
-  set_arguments(kernel, params_, params_.cells_x,                                          //
+  set_arguments(kernel, params_, params_.blocks_x,                                         //
                 images_.buffer(ImageName::light), images_.layout(ImageName::light),        //
                 images_.buffer(ImageName::albedo), images_.layout(ImageName::albedo),      //
                 images_.buffer(ImageName::depth), images_.layout(ImageName::depth),        //
@@ -186,14 +186,14 @@ void Passes::compare_with_frame_before() {
                 images_.buffer(ImageName::mask), images_.layout(ImageName::mask),          //
                 images_.buffer(ImageName::matte), images_.layout(ImageName::matte),        //
                 reuse_->fingerprints, follows_ ? 0 : 1, reuse_->changed);
-  events_.classify.push_back(launch(kernel, 1, params_.cells_y, 1));
+  events_.classify.push_back(launch(kernel, 1, params_.blocks_y, 1));
 }
 
 void Passes::prepare() {
   const auto plane = static_cast<cl_long>(memory_.sizes.frame_plane());
   const int columns = plan_.item_is_pixel ? 1 : memory_.sizes.stride();
   cl::Kernel prepare(plan_.program, "prepare");
-  set_arguments(prepare, params_, window_, plan_.materials, memory_.surface,           //
+  set_arguments(prepare, params_, window_, plan_.materials, memory_.material_ids,      //
                 images_.buffer(ImageName::light), images_.layout(ImageName::light),    //
                 images_.buffer(ImageName::albedo), images_.layout(ImageName::albedo),  //
                 images_.buffer(ImageName::depth), images_.layout(ImageName::depth),    //
@@ -230,12 +230,12 @@ void Passes::prepare_discs(cl_long plane) {
     set_arguments(halve, params_, levels, level, memory_.between, plan_.item_is_pixel ? 1 : columns);
     events_.classify.push_back(launch(halve, plan_.item_is_pixel ? columns : 1, params_.height >> level, local));
   }
-  cl::Kernel light(plan_.program, "light_cells");
+  cl::Kernel light(plan_.program, "light_blocks");
   set_arguments(light, params_, memory_.between, memory_.segments);
-  events_.classify.push_back(launch(light, params_.cells_x, params_.cells_y, local));
-  cl::Kernel dark(plan_.program, "dark_cells");
-  set_arguments(dark, params_, plan_.discs, memory_.cells, memory_.segments);
-  events_.classify.push_back(launch(dark, params_.cells_x, params_.cells_y, local));
+  events_.classify.push_back(launch(light, params_.blocks_x, params_.blocks_y, local));
+  cl::Kernel dark(plan_.program, "dark_blocks");
+  set_arguments(dark, params_, plan_.discs, memory_.blocks, memory_.segments);
+  events_.classify.push_back(launch(dark, params_.blocks_x, params_.blocks_y, local));
 }
 
 int Passes::scatter_steps() const {
@@ -260,22 +260,22 @@ void Passes::scatter_tiles() {
   cl::Kernel kernel(plan_.program, "scatter");
   const auto flag = [](bool value) { return value ? 1 : 0; };
   set_arguments(
-      kernel, params_, plan_.materials, plan_.terms, plan_.rungs, plan_.offsets, plan_.weights, plan_.flat_weights,
-      plan_.smooth_weights, rotations_, plan_.options.seed, memory_.surface, memory_.cells, memory_.passes,  //
-      images_.buffer(ImageName::light), images_.layout(ImageName::light),                                    //
-      images_.buffer(ImageName::albedo), images_.layout(ImageName::albedo),                                  //
-      images_.buffer(ImageName::depth), images_.layout(ImageName::depth),                                    //
-      images_.buffer(ImageName::mask), images_.layout(ImageName::mask),                                      //
-      images_.buffer(ImageName::matte), images_.layout(ImageName::matte),                                    //
-      images_.buffer(ImageName::beauty), images_.layout(ImageName::beauty),                                  //
-      images_.buffer(ImageName::scattered), images_.layout(ImageName::scattered),                            //
-      flag(images_.has(ImageName::scattered)),                                                               //
-      images_.buffer(ImageName::result), images_.layout(ImageName::result),                                  //
-      flag(images_.has(ImageName::result)), flag(plan_.options.bad_pixels == BadPixels::zero),               //
-      flag(copies_), flag(plan_.options.skip_uniform_light), flag(holds_), held_, flag(follows_),            //
-      reuse_ != nullptr ? reuse_->changed : memory_.kinds,                                                   //
-      memory_.windows, static_cast<cl_long>(memory_.sizes.across_plane()),                                   //
-      static_cast<cl_long>(memory_.sizes.down_plane()), memory_.sizes.workers, memory_.kinds, memory_.counters);
+      kernel, params_, plan_.materials, plan_.terms, plan_.levels, plan_.offsets, plan_.weights, plan_.flat_weights,
+      plan_.smooth_weights, rotations_, plan_.options.seed, memory_.material_ids, memory_.blocks, memory_.passes,  //
+      images_.buffer(ImageName::light), images_.layout(ImageName::light),                                          //
+      images_.buffer(ImageName::albedo), images_.layout(ImageName::albedo),                                        //
+      images_.buffer(ImageName::depth), images_.layout(ImageName::depth),                                          //
+      images_.buffer(ImageName::mask), images_.layout(ImageName::mask),                                            //
+      images_.buffer(ImageName::matte), images_.layout(ImageName::matte),                                          //
+      images_.buffer(ImageName::beauty), images_.layout(ImageName::beauty),                                        //
+      images_.buffer(ImageName::scattered), images_.layout(ImageName::scattered),                                  //
+      flag(images_.has(ImageName::scattered)),                                                                     //
+      images_.buffer(ImageName::result), images_.layout(ImageName::result),                                        //
+      flag(images_.has(ImageName::result)), flag(plan_.options.bad_pixels == BadPixels::zero),                     //
+      flag(copies_), flag(plan_.options.skip_uniform_light), flag(defers_), deferred_, flag(follows_),             //
+      reuse_ != nullptr ? reuse_->changed : memory_.kinds,                                                         //
+      memory_.windows, static_cast<cl_long>(memory_.sizes.horizontal_plane()),                                     //
+      static_cast<cl_long>(memory_.sizes.vertical_plane()), memory_.sizes.workers, memory_.kinds, memory_.counters);
   // A device may give a thread several work-items in one go.
   constexpr int items_per_worker = 8;
   events_.scatter.push_back(launch(kernel, items_per_worker * memory_.sizes.workers, 1, 1));
@@ -285,10 +285,10 @@ void Passes::scatter_pixels() {
   const auto plane = static_cast<cl_long>(memory_.sizes.frame_plane());
   for (const char* name : {"scatter_x", "scatter_y"}) {
     cl::Kernel kernel(plan_.program, name);
-    set_arguments(kernel, params_, window_, plan_.materials, plan_.terms, plan_.rungs, plan_.offsets, plan_.weights,
+    set_arguments(kernel, params_, window_, plan_.materials, plan_.terms, plan_.levels, plan_.offsets, plan_.weights,
                   plan_.flat_weights, plan_.smooth_weights, rotations_, plan_.options.seed, memory_.passes,
                   memory_.windows, plane, memory_.between, memory_.segments);
-    if (events_.scatter.size() == 1) kernel.setArg(16, memory_.held);
+    if (events_.scatter.size() == 1) kernel.setArg(16, memory_.deferred);
     events_.scatter.push_back(launch(kernel, params_.width, params_.height, 0));
   }
 }
@@ -297,7 +297,7 @@ void Passes::scatter_exactly(int first_row, int rows) {
   cl::Kernel kernel(plan_.program, "exact");
   set_arguments(kernel, params_, window_, first_row, plan_.materials, plan_.nodes, memory_.windows,
                 static_cast<cl_long>(memory_.sizes.frame_plane()), memory_.between,
-                plan_.item_is_pixel ? 1 : params_.width, memory_.held);
+                plan_.item_is_pixel ? 1 : params_.width, memory_.deferred);
   events_.scatter.push_back(launch(kernel, runs(), rows, plan_.item_is_pixel ? 0 : 1));
 }
 
@@ -309,15 +309,15 @@ void Passes::scatter_discs(int first_row, int rows) {
                 rotations_, memory_.windows, static_cast<cl_long>(memory_.sizes.frame_plane()), memory_.sizes.levels(),
                 memory_.between, memory_.segments,                                     //
                 images_.buffer(ImageName::normal), images_.layout(ImageName::normal),  //
-                plan_.item_is_pixel ? 1 : params_.width, memory_.held, memory_.counters);
+                plan_.item_is_pixel ? 1 : params_.width, memory_.deferred, memory_.counters);
   events_.scatter.push_back(launch(kernel, runs(), rows, plan_.item_is_pixel ? 0 : 1));
 }
 
 void Passes::finish() {
-  if (plan_.tiled && !holds_) return;
+  if (plan_.tiled && !defers_) return;
   cl::Kernel kernel(plan_.program, "finish");
   const auto flag = [](bool value) { return value ? 1 : 0; };
-  set_arguments(kernel, params_, memory_.surface,                                                         //
+  set_arguments(kernel, params_, memory_.material_ids,                                                    //
                 images_.buffer(ImageName::light), images_.layout(ImageName::light),                       //
                 images_.buffer(ImageName::albedo), images_.layout(ImageName::albedo),                     //
                 images_.buffer(ImageName::matte), images_.layout(ImageName::matte),                       //
@@ -326,7 +326,7 @@ void Passes::finish() {
                 flag(images_.has(ImageName::scattered)),                                                  //
                 images_.buffer(ImageName::result), images_.layout(ImageName::result),                     //
                 flag(images_.has(ImageName::result)), flag(plan_.options.bad_pixels == BadPixels::zero),  //
-                flag(copies_ || !plan_.tiled), held_, memory_.kinds, memory_.counters, memory_.passes,
+                flag(copies_ || !plan_.tiled), deferred_, memory_.kinds, memory_.counters, memory_.passes,
                 plan_.item_is_pixel ? 1 : params_.width);
   events_.finish.push_back(launch(kernel, runs(), params_.height, plan_.item_is_pixel ? 0 : 1));
 }

@@ -43,7 +43,7 @@ class Passes {
   /// Pixels whose light or albedo is not finite. Blocks.
   int bad_pixels() const;
 
-  /// Adds what the frame's cells and tiles tell. Blocks.
+  /// Adds what the frame's blocks and tiles tell. Blocks.
   void add_to(Stats& stats) const;
 
  private:
@@ -66,12 +66,12 @@ class Passes {
   params::WindowParams window_;  ///< the frame
   Reuse::State* reuse_;
   bool follows_;  ///< the frame before is one that this may take light from
-  bool holds_;
+  bool defers_;
   bool copies_;
   std::vector<cl::Event> last_;  ///< what the next launch waits for
   StepEvents events_;
   cl::Buffer rotations_;
-  cl::Buffer held_;  ///< light that waits for its output
+  cl::Buffer deferred_;  ///< light that waits for its output
 };
 
 }  // namespace dermis

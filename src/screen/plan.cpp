@@ -7,13 +7,13 @@
 #include <sstream>
 #include <string>
 
+#include "opencl/program.hpp"
 #include "screen/check_materials.hpp"
 #include "screen/disc_tables.hpp"
 #include "screen/frame_images.hpp"
 #include "screen/material_tables.hpp"
 #include "screen/passes.hpp"
 #include "screen/plan_state.hpp"
-#include "opencl/program.hpp"
 #include "taps/check_design.hpp"
 
 namespace dermis {
@@ -28,7 +28,7 @@ void check_options(const Options& options) {
   constexpr int largest_tile_px = 1 << 16;
   check_share(options.jitter, "jitter");
   check_share(options.albedo_mix, "albedo_mix");
-  if (options.tile_width < 0 || options.tile_width % CELL != 0 || options.tile_width > largest_tile_px) {
+  if (options.tile_width < 0 || options.tile_width % BLOCK != 0 || options.tile_width > largest_tile_px) {
     throw Error(ErrorCode::usage, "tile_width", std::to_string(options.tile_width), "a multiple of 16 up to 65536");
   }
   if (options.tile_height < 0 || options.tile_height > largest_tile_px) {
@@ -81,7 +81,7 @@ int vector_width(const Plan::State& state) {
 
 /// Every program costs PoCL 25 ms from its cache on disk, and 200 ms without, for headers and the library of built-in
 /// functions: all kernels are in one if they have vectors of the same width.
-bool is_one_program(const Plan::State& state) { return vector_width(state) == CELL; }
+bool is_one_program(const Plan::State& state) { return vector_width(state) == BLOCK; }
 
 /// The files of a method that works on windows that are the frame.
 std::vector<std::string> files_of(Method method) {
@@ -97,7 +97,7 @@ std::vector<std::string> files_of(Method method) {
 }
 
 cl::Program build_classification(const Plan::State& state) {
-  return build_program(state.device, {"classify/survey.cl"}, state.build_options + build_constant("V", CELL));
+  return build_program(state.device, {"classify/classify.cl"}, state.build_options + build_constant("V", BLOCK));
 }
 
 /// The passes, and the classification too if they are in one program.
@@ -108,7 +108,7 @@ cl::Program build_passes(const Plan::State& state) {
   } else {
     for (const std::string& file : files_of(state.options.method)) files.push_back(file);
   }
-  if (is_one_program(state)) files.emplace_back("classify/survey.cl");
+  if (is_one_program(state)) files.emplace_back("classify/classify.cl");
   return build_program(state.device, files,
                        state.build_options + build_constant("V", vector_width(state)) +
                            build_constant("TERMS", state.terms_per_material) +
@@ -187,7 +187,7 @@ Plan::Plan(const Device& device, std::vector<Material> materials, const FrameDes
     state->farthest_px = tables.farthest_px;
     state->materials = upload(context, tables.materials);
     state->terms = upload(context, tables.terms);
-    state->rungs = upload(context, tables.rungs);
+    state->levels = upload(context, tables.levels);
     state->offsets = upload(context, tables.offsets_px);
     state->weights = upload(context, tables.weights);
     state->flat_weights = upload(context, tables.flat_weights);

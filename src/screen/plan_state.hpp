@@ -5,10 +5,10 @@
 #include <cstdint>
 #include <string>
 
+#include "dermis/plan.hpp"
 #include "opencl/device.hpp"
 #include "opencl/memory_pool.hpp"
 #include "screen/run_memory.hpp"
-#include "dermis/plan.hpp"
 
 namespace dermis {
 
@@ -22,7 +22,7 @@ struct Plan::State {
   cl::Program program;
   cl::Buffer materials;
   cl::Buffer terms;
-  cl::Buffer rungs;
+  cl::Buffer levels;
   cl::Buffer offsets;
   cl::Buffer weights;
   cl::Buffer flat_weights;

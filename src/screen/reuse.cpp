@@ -19,10 +19,10 @@ bool Reuse::State::continues(const Plan::State& its_plan, const RunSizes& its_si
   camera = frame.camera;
   mm_per_unit = frame.mm_per_unit;
   const cl::Context context(its_plan.device.context(), true);
-  const std::size_t cells = static_cast<std::size_t>(sizes.cells_x()) * sizes.cells_y();
-  held = cl::Buffer(context, CL_MEM_READ_WRITE, sizes.held_bytes());
-  fingerprints = cl::Buffer(context, CL_MEM_READ_WRITE, cells * sizeof(cl_ulong));
-  changed = cl::Buffer(context, CL_MEM_READ_WRITE, cells);
+  const std::size_t blocks = static_cast<std::size_t>(sizes.blocks_x()) * sizes.blocks_y();
+  deferred = cl::Buffer(context, CL_MEM_READ_WRITE, sizes.deferred_bytes());
+  fingerprints = cl::Buffer(context, CL_MEM_READ_WRITE, blocks * sizeof(cl_ulong));
+  changed = cl::Buffer(context, CL_MEM_READ_WRITE, blocks);
   return false;
 }
 

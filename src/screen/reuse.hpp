@@ -13,9 +13,9 @@ struct Reuse::State {
   RunSizes sizes{};
   Camera camera;
   double mm_per_unit = 0;
-  cl::Buffer held;          ///< light after scattering, as RunMemory::held
-  cl::Buffer fingerprints;  ///< of cells
-  cl::Buffer changed;       ///< of cells: whether they differ from those before
+  cl::Buffer deferred;      ///< light after scattering, as RunMemory::held
+  cl::Buffer fingerprints;  ///< of blocks
+  cl::Buffer changed;       ///< of blocks: whether they differ from those before
 
   /// Whether a frame of that plan, size, camera and scale is followed by another. If not, there is new memory.
   bool continues(const Plan::State& its_plan, const RunSizes& its_sizes, const Frame& frame);

@@ -129,8 +129,8 @@ DesignedTaps DesignedTaps::with_count(int count) const {
 }
 
 SizedTaps DesignedTaps::at(double pixel_mm, Fetch fetch, Search search, const std::vector<double>& near_px) const {
-  const double footprint = 1 / pixel_mm;
-  const double exact_last_px = std::ceil(radius_mm_ * footprint - 0.5);
+  const double px_per_mm = 1 / pixel_mm;
+  const double exact_last_px = std::ceil(radius_mm_ * px_per_mm - 0.5);
   const int pairs = design_.count / 2;
   // Pixels of the widest kernels are small against everything: they have the taps of kernels half as wide, spread out.
   const int widest_px = pairs <= most_fitted_pairs ? 1024 : 32768;
@@ -140,7 +140,7 @@ SizedTaps DesignedTaps::at(double pixel_mm, Fetch fetch, Search search, const st
     for (double& offset_px : near) offset_px = std::ldexp(offset_px, -doublings);
     SizedTaps taps = at(std::ldexp(pixel_mm, doublings), fetch, search, near);
     for (double& offset_px : taps.placed.offsets_px) offset_px = std::ldexp(offset_px, doublings);
-    taps.core_half_width_px = std::ldexp(taps.core_half_width_px, doublings);
+    taps.centre_half_width_px = std::ldexp(taps.centre_half_width_px, doublings);
     return taps;
   }
   const int last_px = std::max(1, static_cast<int>(exact_last_px));
@@ -148,11 +148,11 @@ SizedTaps DesignedTaps::at(double pixel_mm, Fetch fetch, Search search, const st
   if (!dense && design_.placement == Placement::optimised && pairs <= most_fitted_pairs) {
     return fitted(pixel_mm, last_px, fetch, search, near_px);
   }
-  const TapRuns runs = dense ? every_pixel(last_px) : make_runs(profile_, design_.placement, footprint, last_px, pairs);
+  const TapRuns runs = dense ? every_pixel(last_px) : make_runs(profile_, design_.placement, px_per_mm, last_px, pairs);
   SizedTaps taps;
-  taps.placed.offsets_px = offsets_in(profile_, runs, footprint, dense ? Fetch::integer : fetch);
+  taps.placed.offsets_px = offsets_in(profile_, runs, px_per_mm, dense ? Fetch::integer : fetch);
   taps.placed.weights = run_weights(runs, pixel_mm);
-  taps.core_half_width_px = runs.core_px + 0.5;
+  taps.centre_half_width_px = runs.centre_px + 0.5;
   return taps;
 }
 
@@ -185,12 +185,12 @@ SizedTaps DesignedTaps::fitted(double pixel_mm, int last_px, Fetch fetch, Search
   SizedTaps taps;
   taps.placed =
       fit_taps(channels, start_px, search, last_px, fetch, design_.model == Model::optimised, non_negative, sums);
-  taps.core_half_width_px = core_half_width_px(taps.placed, pixel_mm);
+  taps.centre_half_width_px = centre_half_width_px(taps.placed, pixel_mm);
   return taps;
 }
 
 /// The strip that holds as much of the widest channel as the centre tap weighs, at least a pixel.
-double DesignedTaps::core_half_width_px(const PlacedTaps& placed, double pixel_mm) const {
+double DesignedTaps::centre_half_width_px(const PlacedTaps& placed, double pixel_mm) const {
   const int widest = profile_.widest_channel();
   const double light = std::clamp(placed.weights[widest](0, 0), 0.0, 0.99);
   const double half_width = profile_.half_width(widest, light) / pixel_mm;

@@ -6,16 +6,16 @@
 #include <vector>
 
 #include "dermis/taps.hpp"
-#include "taps/prediction/expected_error.hpp"
 #include "taps/placement/tap_fit.hpp"
 #include "taps/placement/tap_runs.hpp"
+#include "taps/prediction/expected_error.hpp"
 
 namespace dermis {
 
 /// Taps for one size of pixel.
 struct SizedTaps {
   PlacedTaps placed;
-  double core_half_width_px = 0.5;  ///< the centre stands for |x| < this
+  double centre_half_width_px = 0.5;  ///< the centre stands for |x| < this
 };
 
 class DesignedTaps {
@@ -45,7 +45,7 @@ class DesignedTaps {
  private:
   std::array<Eigen::MatrixXd, 3> run_weights(const TapRuns& runs, double pixel_mm) const;
   SizedTaps fitted(double pixel_mm, int last_px, Fetch fetch, Search search, const std::vector<double>& near_px) const;
-  double core_half_width_px(const PlacedTaps& placed, double pixel_mm) const;
+  double centre_half_width_px(const PlacedTaps& placed, double pixel_mm) const;
   std::array<ChannelOnPixels, 3> on_pixels(double pixel_mm, int last_px) const;
 
   Profile profile_;

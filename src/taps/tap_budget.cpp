@@ -9,8 +9,8 @@ namespace dermis {
 
 namespace {
 
-/// Rungs in a row that have the same count: that which the widest of them needs. Errors grow by a tenth or two from
-/// the first to the last, and to predict the error of every rung would take as long as all fits.
+/// Levels in a row that have the same count: that which the widest of them needs. Errors grow by a tenth or two from
+/// the first to the last, and to predict the error of every level would take as long as all fits.
 constexpr int group = 4;
 
 /// Offsets for one radius as a start for another.
@@ -19,8 +19,8 @@ std::vector<double> scaled(std::vector<double> offsets_px, double ratio) {
   return offsets_px;
 }
 
-/// Many taps are where they were, but for the scale; a search for each rung would take a second.
-bool is_searched_at_every_rung(int rank, std::size_t pairs) {
+/// Many taps are where they were, but for the scale; a search for each level would take a second.
+bool is_searched_at_every_level(int rank, std::size_t pairs) {
   constexpr std::size_t most_unknowns = 24;
   return static_cast<std::size_t>(rank) * pairs <= most_unknowns;
 }
@@ -42,10 +42,10 @@ double worthwhile_rel_l2(const DesignedTaps& designed, double tolerance, double 
   return std::max(tolerance, of_model * designed.model_rel_l2(pixel_mm));
 }
 
-double middle_radius_px(int rung) {
-  constexpr int rungs_per_octave = 1 << Taps::log2_rungs_per_octave;
-  const double middle = 1 + (rung % rungs_per_octave + 0.5) / rungs_per_octave;
-  return std::ldexp(Taps::min_radius_px * middle, rung / rungs_per_octave);
+double middle_radius_px(int level) {
+  constexpr int levels_per_octave = 1 << Taps::log2_levels_per_octave;
+  const double middle = 1 + (level % levels_per_octave + 0.5) / levels_per_octave;
+  return std::ldexp(Taps::min_radius_px * middle, level / levels_per_octave);
 }
 
 TapBudget::TapBudget(const Profile& profile, const TapsDesign& design) : design_(design) {
@@ -53,21 +53,21 @@ TapBudget::TapBudget(const Profile& profile, const TapsDesign& design) : design_
   for (const int count : tap_counts(design)) levels_.push_back(designed.with_count(count));
 }
 
-SizedTaps TapBudget::at(int rung) {
-  const int place = rung % group;
+SizedTaps TapBudget::at(int level) {
+  const int place = level % group;
   if (place == 0) {
     ahead_.reset();
-    if (!at_last_level()) ahead_ = good_enough(rung + group - 1);
+    if (!at_last_level()) ahead_ = good_enough(level + group - 1);
   }
   if (place == group - 1 && ahead_) return *std::exchange(ahead_, std::nullopt);
-  return fitted(rung, place == 0);
+  return fitted(level, place == 0);
 }
 
-SizedTaps TapBudget::good_enough(int rung) {
-  const double pixel_mm = designed().radius_mm() / middle_radius_px(rung);
-  SizedTaps taps = fitted(rung, true);
+SizedTaps TapBudget::good_enough(int level) {
+  const double pixel_mm = designed().radius_mm() / middle_radius_px(level);
+  SizedTaps taps = fitted(level, true);
   double enough = design_.tolerance;
-  for (bool has_model = false; !at_last_level(); taps = fitted(rung, true)) {
+  for (bool has_model = false; !at_last_level(); taps = fitted(level, true)) {
     const double error = designed().predicted_rel_l2(taps.placed, pixel_mm);
     if (error > enough && !has_model) {
       enough = worthwhile_rel_l2(designed(), enough, pixel_mm);
@@ -79,11 +79,11 @@ SizedTaps TapBudget::good_enough(int rung) {
   return taps;
 }
 
-SizedTaps TapBudget::fitted(int rung, bool look) {
+SizedTaps TapBudget::fitted(int level, bool look) {
   const DesignedTaps& level = levels_[level_];
   const auto pairs = static_cast<std::size_t>(level.count() / 2);
-  const double radius_px = middle_radius_px(rung);
-  look = look || is_searched_at_every_rung(design_.rank, pairs);
+  const double radius_px = middle_radius_px(level);
+  look = look || is_searched_at_every_level(design_.rank, pairs);
   const Search search = near_px_.size() != pairs ? Search::everywhere : look ? Search::nearby : Search::nowhere;
   SizedTaps taps =
       level.at(level.radius_mm() / radius_px, Fetch::integer, search, scaled(near_px_, radius_px / near_radius_px_));

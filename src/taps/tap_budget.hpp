@@ -17,10 +17,10 @@ std::vector<int> tap_counts(const TapsDesign& design);
 /// away, if that is larger.
 double worthwhile_rel_l2(const DesignedTaps& designed, double tolerance, double pixel_mm);
 
-/// The kernel radius in the middle of a rung, px.
-double middle_radius_px(int rung);
+/// The kernel radius in the middle of a level, px.
+double middle_radius_px(int level);
 
-/// Taps for the rungs of a ladder, from narrow to wide kernels. Wider kernels never get fewer.
+/// Taps for the levels of a level table, from narrow to wide kernels. Wider kernels never get fewer.
 class TapBudget {
  public:
   /// The design is in range and has a rank.
@@ -29,14 +29,14 @@ class TapBudget {
   /// For the model and its radius, which do not depend on the count.
   const DesignedTaps& designed() const { return levels_.front(); }
 
-  /// The taps of a rung. To be called for each rung in turn, from 0.
-  SizedTaps at(int rung);
+  /// The taps of a level. To be called for each level in turn, from 0.
+  SizedTaps at(int level);
 
  private:
-  /// Of the least count, from the present one on, that is good enough for the rung.
-  SizedTaps good_enough(int rung);
+  /// Of the least count, from the present one on, that is good enough for the level.
+  SizedTaps good_enough(int level);
   /// Of the present count.
-  SizedTaps fitted(int rung, bool look);
+  SizedTaps fitted(int level, bool look);
   bool at_last_level() const { return level_ + 1 == levels_.size(); }
 
   TapsDesign design_;
@@ -44,7 +44,7 @@ class TapBudget {
   std::size_t level_ = 0;
   std::vector<double> near_px_;  ///< the latest taps, and the radius they are for
   double near_radius_px_ = 1;
-  std::optional<SizedTaps> ahead_;  ///< of the last rung of the present group
+  std::optional<SizedTaps> ahead_;  ///< of the last level of the present group
 };
 
 }  // namespace dermis

@@ -7,8 +7,8 @@
 
 #include "taps/check_design.hpp"
 #include "taps/designed_taps.hpp"
-#include "taps/tables/plane_weights.hpp"
 #include "taps/placement/quanta.hpp"
+#include "taps/tables/plane_weights.hpp"
 #include "taps/tables/radial_table.hpp"
 #include "taps/tap_budget.hpp"
 
@@ -16,9 +16,9 @@ namespace dermis {
 
 namespace {
 
-/// The bits of a float32 below those that number rungs.
-constexpr int bits_below_rung = 23 - Taps::log2_rungs_per_octave;
-constexpr int rungs_per_octave = 1 << Taps::log2_rungs_per_octave;
+/// The bits of a float32 below those that number levels.
+constexpr int bits_below_level = 23 - Taps::log2_levels_per_octave;
+constexpr int levels_per_octave = 1 << Taps::log2_levels_per_octave;
 
 /// The tables of one term, for radii up to radius_mm.
 Term make_term(const Profile& profile, const ModelTerm& model, double radius_mm) {
@@ -32,13 +32,13 @@ Term make_term(const Profile& profile, const ModelTerm& model, double radius_mm)
     const double value = std::isinf(r) ? 0 : value_of(profile, c, model.functions[c], r);
     return model.normalised ? std::max(value, 0.0) : value;
   };
-  const auto core = [&](int c, double r) {
+  const auto centre = [&](int c, double r) {
     const TermFunction& f = model.functions[c];
     return f.sum() - (std::isinf(r) ? 0 : 2 * tail_of(profile, c, f, r));
   };
   // Tilt stretches distances beyond the radius.
   term.falloff = tabulate(falloff, 2 * radius_mm);
-  term.core = tabulate([&](int c, double root) { return core(c, root * root); }, std::sqrt(4 * radius_mm));
+  term.centre = tabulate([&](int c, double root) { return centre(c, root * root); }, std::sqrt(4 * radius_mm));
   return term;
 }
 
@@ -77,10 +77,10 @@ TapWeight follow(const std::array<double, 3>& weights, const std::array<double, 
   return result;
 }
 
-/// `step`: between rungs, as a share of the footprint.
-Rung make_rung(const SizedTaps& taps, const std::vector<Term>& terms, double footprint, double step) {
-  Rung rung{static_cast<float>(footprint), static_cast<float>(taps.core_half_width_px), {}, {}, {}, {}, {}, {}};
-  const double core_mm = rung.core_half_width_px / footprint;
+/// `step`: between levels, as a share of the px_per_mm.
+TapLevel make_level(const SizedTaps& taps, const std::vector<Term>& terms, double px_per_mm, double step) {
+  TapLevel level{static_cast<float>(px_per_mm), static_cast<float>(taps.centre_half_width_px), {}, {}, {}, {}, {}, {}};
+  const double centre_mm = level.centre_half_width_px / px_per_mm;
   const auto weights_of = [&](std::size_t row, std::size_t t) {
     std::array<double, 3> weights;
     for (int c = 0; c < 3; ++c) {
@@ -92,62 +92,62 @@ Rung make_rung(const SizedTaps& taps, const std::vector<Term>& terms, double foo
     const std::array<double, 3> weights = weights_of(0, t);
     std::array<float, 3> gain{};
     for (int c = 0; c < 3; ++c) {
-      const double core = value_at(terms[t].core, c, std::sqrt(core_mm));
-      if (terms[t].normalised && core > 0) gain[c] = static_cast<float>(weights[c] / core);
+      const double centre = value_at(terms[t].centre, c, std::sqrt(centre_mm));
+      if (terms[t].normalised && centre > 0) gain[c] = static_cast<float>(weights[c] / centre);
     }
-    rung.core_gain.push_back(gain);
+    level.centre_gain.push_back(gain);
   }
   const std::vector<double>& offsets_px = taps.placed.offsets_px;
   for (std::size_t i = 0; i < offsets_px.size(); ++i) {
-    rung.offsets_px.push_back(static_cast<int>(offsets_px[i]));
-    const double distance_mm = offsets_px[i] / footprint;
+    level.offsets_px.push_back(static_cast<int>(offsets_px[i]));
+    const double distance_mm = offsets_px[i] / px_per_mm;
     for (std::size_t t = 0; t < terms.size(); ++t) {
       std::array<double, 3> densities;
       for (int c = 0; c < 3; ++c) densities[c] = value_at(terms[t].falloff, c, distance_mm);
-      rung.weights.push_back(follow(weights_of(i + 1, t), densities, weights_of(i + 1, 0),
-                                    length_px(offsets_px, i) / footprint, terms[t].normalised));
+      level.weights.push_back(follow(weights_of(i + 1, t), densities, weights_of(i + 1, 0),
+                                     length_px(offsets_px, i) / px_per_mm, terms[t].normalised));
     }
   }
-  // Parts of the rung are equal steps of the kernel radius, and it was made for the middle.
-  for (std::size_t part = 0; part < rung.flat_weights.size(); ++part) {
-    const double position = static_cast<double>(part) / static_cast<double>(rung.flat_weights.size());
+  // Parts of the level are equal steps of the kernel radius, and it was made for the middle.
+  for (std::size_t part = 0; part < level.flat_weights.size(); ++part) {
+    const double position = static_cast<double>(part) / static_cast<double>(level.flat_weights.size());
     const double ratio = 1 + (position - 0.5) * step;
-    rung.flat_weights[part] = make_flat_weights(rung, terms, taps.placed, 1 / ratio);
+    level.flat_weights[part] = make_flat_weights(level, terms, taps.placed, 1 / ratio);
   }
-  rung.stretch_weights = make_stretch_weights(rung, terms, taps.placed);
-  rung.skew_weights = make_skew_weights(rung, terms);
-  return rung;
+  level.stretch_weights = make_stretch_weights(level, terms, taps.placed);
+  level.skew_weights = make_skew_weights(level, terms);
+  return level;
 }
 
 /// Leaves a channel alone whose own kernel is narrower than half a pixel.
-void leave_out(Rung& rung, const std::vector<Term>& terms, int c) {
-  for (TapWeight& weight : rung.weights) weight.length_mm[c] = weight.share[c] = 0;
-  for (std::size_t at = 0; at < rung.stretch_weights.size(); ++at) {
+void leave_out(TapLevel& level, const std::vector<Term>& terms, int c) {
+  for (TapWeight& weight : level.weights) weight.length_mm[c] = weight.share[c] = 0;
+  for (std::size_t at = 0; at < level.stretch_weights.size(); ++at) {
     const bool is_centre = at < terms.size();
-    for (auto& weights : rung.flat_weights) weights[at][c] = is_centre ? terms[at].sum[c] : 0;
-    rung.stretch_weights[at][c] = 0;
-    if (!is_centre) rung.skew_weights[at - terms.size()][c] = 0;
+    for (auto& weights : level.flat_weights) weights[at][c] = is_centre ? terms[at].sum[c] : 0;
+    level.stretch_weights[at][c] = 0;
+    if (!is_centre) level.skew_weights[at - terms.size()][c] = 0;
   }
 }
 
 /// The same taps for pixels half the size.
-Rung spread(Rung rung) {
-  rung.footprint *= 2;
-  rung.core_half_width_px *= 2;
-  for (int& offset_px : rung.offsets_px) offset_px *= 2;
-  for (auto& weight : rung.skew_weights) {
+TapLevel spread(TapLevel level) {
+  level.px_per_mm *= 2;
+  level.centre_half_width_px *= 2;
+  for (int& offset_px : level.offsets_px) offset_px *= 2;
+  for (auto& weight : level.skew_weights) {
     for (float& channel : weight) channel *= 2;  // it is per pixel
   }
-  return rung;
+  return level;
 }
 
 }  // namespace
 
-int Taps::rung_index(float radius_px) {
+int Taps::level_index(float radius_px) {
   if (!(radius_px >= min_radius_px)) return -1;
   const auto steps =
-      (std::bit_cast<std::uint32_t>(radius_px) - std::bit_cast<std::uint32_t>(min_radius_px)) >> bits_below_rung;
-  return std::min(static_cast<int>(steps), (octaves << log2_rungs_per_octave) - 1);
+      (std::bit_cast<std::uint32_t>(radius_px) - std::bit_cast<std::uint32_t>(min_radius_px)) >> bits_below_level;
+  return std::min(static_cast<int>(steps), (octaves << log2_levels_per_octave) - 1);
 }
 
 Taps make_taps(const Profile& profile, const TapsDesign& design) {
@@ -158,18 +158,18 @@ Taps make_taps(const Profile& profile, const TapsDesign& design) {
   taps.radius_mm = designed.radius_mm();
   for (int c = 0; c < 3; ++c) taps.relative_width[c] = static_cast<float>(designed.radius_mm(c) / taps.radius_mm);
   for (const ModelTerm& term : designed.model()) taps.terms.push_back(make_term(profile, term, taps.radius_mm));
-  for (int i = 0; i < Taps::octaves * rungs_per_octave; ++i) {
+  for (int i = 0; i < Taps::octaves * levels_per_octave; ++i) {
     const double radius_px = middle_radius_px(i);
     // Pixels are small against everything in wider kernels; the taps of one octave serve the next.
     if (radius_px > design.widest_px && design.count < design.widest_px) {
-      taps.rungs.push_back(spread(taps.rungs[i - rungs_per_octave]));
+      taps.levels.push_back(spread(taps.levels[i - levels_per_octave]));
       continue;
     }
-    const double width_px = std::ldexp(Taps::min_radius_px, i / rungs_per_octave) / rungs_per_octave;
-    taps.rungs.push_back(make_rung(budget.at(i), taps.terms, radius_px / taps.radius_mm, width_px / radius_px));
+    const double width_px = std::ldexp(Taps::min_radius_px, i / levels_per_octave) / levels_per_octave;
+    taps.levels.push_back(make_level(budget.at(i), taps.terms, radius_px / taps.radius_mm, width_px / radius_px));
     for (int c = 0; c < 3; ++c) {
       if (radius_px * static_cast<double>(taps.relative_width[c]) < Taps::min_radius_px) {
-        leave_out(taps.rungs.back(), taps.terms, c);
+        leave_out(taps.levels.back(), taps.terms, c);
       }
     }
   }

@@ -2,9 +2,9 @@
 #include <Eigen/Core>
 
 #include "dermis/texture.hpp"
-#include "taps/prediction/expected_error.hpp"
 #include "taps/model/plane_spectrum.hpp"
 #include "taps/model/separable_model.hpp"
+#include "taps/prediction/expected_error.hpp"
 
 namespace dermis {
 

@@ -5,11 +5,11 @@
 
 #include "dermis/error.hpp"
 #include "dermis/texture.hpp"
-#include "taps/prediction/expected_error.hpp"
-#include "taps/placement/least_squares.hpp"
 #include "taps/model/plane_spectrum.hpp"
-#include "texture/pole_fit.hpp"
 #include "taps/model/separable_model.hpp"
+#include "taps/placement/least_squares.hpp"
+#include "taps/prediction/expected_error.hpp"
+#include "texture/pole_fit.hpp"
 
 namespace dermis {
 

@@ -5,8 +5,8 @@
 #include <cstring>
 #include <string>
 
-#include "opencl/image_buffers.hpp"
 #include "dermis/texture.hpp"
+#include "opencl/image_buffers.hpp"
 
 namespace dermis {
 

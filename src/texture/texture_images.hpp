@@ -4,8 +4,8 @@
 #include <array>
 #include <cstddef>
 
-#include "opencl/image_buffers.hpp"
 #include "dermis/texture.hpp"
+#include "opencl/image_buffers.hpp"
 
 namespace dermis {
 

@@ -34,8 +34,8 @@ std::string build_options(const TexturePlan::State& state, const TextureDescript
 }
 
 void build(TexturePlan::State& state) {
-  state.image_program =
-      build_program(state.device, {"texture/texture_prepare.cl", "texture/texture_finish.cl"}, build_options(state, state.description));
+  state.image_program = build_program(state.device, {"texture/texture_prepare.cl", "texture/texture_finish.cl"},
+                                      build_options(state, state.description));
   // The passes do not see albedo and mask, and are the same with and without. Where there is no light the states of a
   // recursion fade away, for which numbers below the normal ones are slow.
   state.pass_program =

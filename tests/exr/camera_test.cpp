@@ -6,11 +6,11 @@
 #include <functional>
 #include <limits>
 
-#include "support/catch.hpp"
 #include "dermis/exr.hpp"
+#include "exr/temporary_folder.hpp"
+#include "support/catch.hpp"
 #include "support/failure.hpp"
 #include "support/random.hpp"
-#include "exr/temporary_folder.hpp"
 
 using dermis::Camera;
 using dermis::ErrorCode;

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "support/catch.hpp"
 #include "dermis/exr.hpp"
+#include "support/catch.hpp"
 #include "support/failure.hpp"
 
 using dermis::ErrorCode;

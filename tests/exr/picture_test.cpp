@@ -7,14 +7,14 @@
 #include <csignal>
 #include <cstring>
 
-#include "support/catch.hpp"
 #include "dermis/exr.hpp"
 #include "exr/header.hpp"
-#include "support/failure.hpp"
-#include "support/random.hpp"
 #include "exr/raw_exr.hpp"
 #include "exr/stored_channels.hpp"
 #include "exr/temporary_folder.hpp"
+#include "support/catch.hpp"
+#include "support/failure.hpp"
+#include "support/random.hpp"
 
 using dermis::ErrorCode;
 using dermis::Format;

@@ -1,11 +1,11 @@
 #include <algorithm>
 #include <cstring>
 
-#include "support/catch.hpp"
 #include "dermis/exr.hpp"
+#include "exr/temporary_folder.hpp"
+#include "support/catch.hpp"
 #include "support/failure.hpp"
 #include "support/random.hpp"
-#include "exr/temporary_folder.hpp"
 
 using dermis::ErrorCode;
 using dermis::Format;

@@ -4,8 +4,8 @@
 #include <optional>
 #include <vector>
 
-#include "support/guarded_image.hpp"
 #include "dermis/lights.hpp"
+#include "support/guarded_image.hpp"
 #include "support/random.hpp"
 
 /// A light and the memory of its map.

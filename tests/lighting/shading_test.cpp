@@ -6,10 +6,10 @@
 #include <numbers>
 #include <optional>
 
-#include "support/catch.hpp"
-#include "lighting/random_lights.hpp"
 #include "dermis/error.hpp"
 #include "dermis/oracle/lighting.hpp"
+#include "lighting/random_lights.hpp"
+#include "support/catch.hpp"
 
 using dermis::Camera;
 using dermis::Device;

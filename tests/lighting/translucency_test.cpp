@@ -4,11 +4,11 @@
 #include <cmath>
 #include <limits>
 
-#include "support/catch.hpp"
-#include "opencl/opencl.hpp"
-#include "lighting/random_lights.hpp"
 #include "dermis/error.hpp"
 #include "dermis/oracle/lighting.hpp"
+#include "lighting/random_lights.hpp"
+#include "opencl/opencl.hpp"
+#include "support/catch.hpp"
 
 using dermis::Device;
 using dermis::Format;

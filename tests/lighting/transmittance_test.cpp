@@ -4,12 +4,12 @@
 #include <limits>
 #include <vector>
 
-#include "support/catch.hpp"
-#include "support/some_profiles.hpp"
 #include "dermis/error.hpp"
 #include "dermis/oracle/lighting.hpp"
 #include "dermis/translucency.hpp"
+#include "support/catch.hpp"
 #include "support/random.hpp"
+#include "support/some_profiles.hpp"
 
 using dermis::Device;
 using dermis::Profile;

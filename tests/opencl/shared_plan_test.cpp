@@ -4,11 +4,11 @@
 #include <thread>
 #include <vector>
 
-#include "support/catch.hpp"
+#include "dermis/plan.hpp"
 #include "opencl/device_cache.hpp"
 #include "opencl/program.hpp"
+#include "support/catch.hpp"
 #include "support/random_frame.hpp"
-#include "dermis/plan.hpp"
 
 using dermis::Device;
 using dermis::FitKey;
@@ -114,7 +114,7 @@ TEST_CASE("a program is built once for its files and options", "[plan][sharing]"
       "-DPIXEL_WIDTH=0 -DJITTER=0 -DSHEARED=0 -DV=16 -DFLATNESS=0.1f -DSMOOTHNESS=0.4f -DMOST_STRETCH=0.75f "
       "-DMOST_SKEW=0.5f";
   const auto built = [&](const std::string& more) {
-    return dermis::build_program(device, {"classify/survey.cl"}, options + more)();
+    return dermis::build_program(device, {"classify/classify.cl"}, options + more)();
   };
   const auto* first = built("");
   CHECK(built("") == first);

@@ -4,12 +4,12 @@
 #include <span>
 #include <vector>
 
-#include "support/catch.hpp"
 #include "dermis/oracle/reference.hpp"
 #include "oracle/flat_run.hpp"
 #include "oracle/made_frame.hpp"
 #include "oracle/made_taps.hpp"
 #include "oracle/separable_run.hpp"
+#include "support/catch.hpp"
 
 namespace dermis::oracle {
 
@@ -27,15 +27,15 @@ MadeFrame plane(int width) {
 
 }  // namespace
 
-TEST_CASE("a flat cell leaves bad light out and divides by what is left", "[bad_pixels]") {
+TEST_CASE("a flat block leaves bad light out and divides by what is left", "[bad_pixels]") {
   const Material material = telling_material(5);
   for (const bool by_albedo : {false, true}) {
     MadeFrame made = plane(16);
     made.albedo.assign(3 * made.pixels(), 1);
     for (std::size_t y = 0; y < 5; ++y) (by_albedo ? made.albedo : made.light)[3 * (16 * y + 5) + 2] = nan;
     const Reference reference = separable(made.frame(), std::span(&material, 1), {});
-    const double w = 0.125 + rung_for(5) / 1024.0;
-    CHECK(told(reference, 3, 2, false) == rung_for(5));
+    const double w = 0.125 + level_for(5) / 1024.0;
+    CHECK(told(reference, 3, 2, false) == level_for(5));
     CHECK(reference.scattered(4, 2) == Approx(((1 - 2 * w) * 16 + w * 9) / (1 - w)).epsilon(1e-14));
     CHECK(reference.scattered(5, 2) == 25);
     CHECK(reference.scattered_bound(5, 2) == 0);
@@ -59,23 +59,23 @@ TEST_CASE("the depth of a bad pixel counts for what is flat", "[bad_pixels]") {
   const Material material = telling_material(5);
   MadeFrame made = plane(16);
   made.light[3 * 12] = nan;
-  CHECK(told(separable(made.frame(), std::span(&material, 1), {}), 4, 2, false) == rung_for(5));
+  CHECK(told(separable(made.frame(), std::span(&material, 1), {}), 4, 2, false) == level_for(5));
   made.depth[12] = 20;
   CHECK(told(separable(made.frame(), std::span(&material, 1), {}), 4, 2, false) == not_flat);
   made.depth[12] = 1e10F;  // no surface
-  CHECK(told(separable(made.frame(), std::span(&material, 1), {}), 4, 2, false) == rung_for(5));
+  CHECK(told(separable(made.frame(), std::span(&material, 1), {}), 4, 2, false) == level_for(5));
 }
 
-TEST_CASE("the width of a bad pixel counts for the rung of its cell", "[bad_pixels]") {
+TEST_CASE("the width of a bad pixel counts for the level of its block", "[bad_pixels]") {
   Material material = tiny_material();
   material.taps.radius_mm = 0.54;
-  material.taps.rungs = {made_rung(1, {}, 1), made_rung(1, {1}, 1)};
+  material.taps.levels = {made_level(1, {}, 1), made_level(1, {1}, 1)};
   MadeFrame made = three_pixels();
   made.mask = {0.95F, 0.95F, 1};
   made.light[7] = nan;
   CHECK(run(made, material).scattered(0, 0) > 1.5);
   made.mask[2] = 0.95F;
-  CHECK(run(made, material).scattered(0, 0) == 1);  // the first rung has no taps
+  CHECK(run(made, material).scattered(0, 0) == 1);  // the first level has no taps
 }
 
 TEST_CASE("the depth of a bad pixel counts for the slope of its neighbours", "[bad_pixels]") {

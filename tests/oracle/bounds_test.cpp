@@ -4,15 +4,15 @@
 #include <cmath>
 #include <vector>
 
-#include "support/catch.hpp"
 #include "dermis/oracle/reference.hpp"
 #include "dermis/oracle/scenes.hpp"
 #include "oracle/float_filter.hpp"
 #include "oracle/made_frame.hpp"
 #include "oracle/made_taps.hpp"
-#include "support/random.hpp"
 #include "oracle/random_case.hpp"
 #include "oracle/separable_run.hpp"
+#include "support/catch.hpp"
+#include "support/random.hpp"
 
 namespace dermis::oracle {
 
@@ -39,14 +39,14 @@ TEST_CASE("float32 stays within the bounds on random frames", "[bounds]") {
   Random random(3);
   double worst = 0;
   int changed = 0;
-  int flat_cells = 0;
-  int smooth_cells = 0;
-  int cells = 0;
+  int flat_blocks = 0;
+  int smooth_blocks = 0;
+  int blocks = 0;
   const int sizes[][2] = {{1, 1}, {7, 5}, {40, 23}, {33, 64}, {17, 1}, {1, 40}};
   for (int round = 0; round < 96; ++round) {
     const int* size = sizes[round % 6];
     const bool plain = round / 6 % 2 == 0;
-    std::vector materials{ladder_material(1, 0, 1), ladder_material(0.4, 1, 2)};
+    std::vector materials{level_material(1, 0, 1), level_material(0.4, 1, 2)};
     materials[1].width_follows_albedo = !plain;
     if (round >= 6) {
       add_terms(random, materials[0].taps, 1, 3);
@@ -60,9 +60,9 @@ TEST_CASE("float32 stays within the bounds on random frames", "[bounds]") {
     INFO("round " << round);
     worst = std::max(worst, largest_share(filter.scattered, reference.scattered, reference.scattered_bound));
     worst = std::max(worst, largest_share(filter.result, reference.result, reference.result_bound));
-    flat_cells += filter.flat_cells();
-    smooth_cells += filter.smooth_cells();
-    if (plain) cells += 2 * ((size[0] + 15) / 16) * ((size[1] + 15) / 16);
+    flat_blocks += filter.flat_blocks();
+    smooth_blocks += filter.smooth_blocks();
+    if (plain) blocks += 2 * ((size[0] + 15) / 16) * ((size[1] + 15) / 16);
     for (std::size_t i = 0; i < made.beauty.size(); ++i) {
       changed += std::abs(reference.result.values[i] - static_cast<double>(made.beauty[i])) > 1e-3 ? 1 : 0;
     }
@@ -70,13 +70,13 @@ TEST_CASE("float32 stays within the bounds on random frames", "[bounds]") {
   INFO("largest share of a bound " << worst);
   CHECK(changed > 1000);
   CHECK(worst > 0.01);
-  CHECK(flat_cells > cells / 10);
-  CHECK(smooth_cells > cells / 20);
-  CHECK(flat_cells + smooth_cells < cells - cells / 20);
+  CHECK(flat_blocks > blocks / 10);
+  CHECK(smooth_blocks > blocks / 20);
+  CHECK(flat_blocks + smooth_blocks < blocks - blocks / 20);
 }
 
 TEST_CASE("bounds are narrow on ordinary frames", "[bounds]") {
-  const std::vector materials{ladder_material(1, 1, 1), ladder_material(0.5, 2, 1)};
+  const std::vector materials{level_material(1, 1, 1), level_material(0.5, 2, 1)};
   for (const SceneInfo& info : scenes()) {
     const Scene scene = oracle::scene(info.name, 65, 48);
     const Reference reference = separable(scene.frame(), materials, {});
@@ -87,7 +87,7 @@ TEST_CASE("bounds are narrow on ordinary frames", "[bounds]") {
 }
 
 TEST_CASE("bounds of several terms are narrow on ordinary frames", "[bounds]") {
-  Material material = ladder_material(1, 0, 1);
+  Material material = level_material(1, 0, 1);
   add_term(material.taps, gaussian_term(0.5), {{0.2F, 0.2F, 0.2F}, {0.5F, 0.5F, 0.5F}});
   Term correction = gaussian_term(0.5);
   correction.normalised = false;
@@ -117,7 +117,7 @@ TEST_CASE("the bound admits both sides of a decision that float32 cannot make", 
 }
 
 TEST_CASE("the bound admits that a pixel beside wider ones is left alone", "[bounds]") {
-  // Half a pixel again, but only the lit one: its cell has taps all the same.
+  // Half a pixel again, but only the lit one: its block has taps all the same.
   MadeFrame made(16, 1, Camera::orthographic(0.1, 0.1), 0);
   made.light[3 * 8] = 1;
   made.mask.assign(16, 1);
@@ -134,11 +134,11 @@ TEST_CASE("the bound admits that a pixel beside wider ones is left alone", "[bou
   CHECK(clear.scattered_bound(8, 0) < 2e-5);
 }
 
-TEST_CASE("the bound admits either rung", "[bounds]") {
-  // At 17/16 of half a pixel the second rung begins, the first one to have taps.
+TEST_CASE("the bound admits either level", "[bounds]") {
+  // At 17/16 of half a pixel the second level begins, the first one to have taps.
   Material material = tiny_material();
   material.taps.radius_mm = 0.5;
-  material.taps.rungs = {made_rung(1, {}, 1), made_rung(1, {1}, 1)};
+  material.taps.levels = {made_level(1, {}, 1), made_level(1, {1}, 1)};
   for (const bool flat : {true, false}) {
     const auto bound_at = [&](double px_per_mm) {
       MadeFrame made(3, 1, Camera::orthographic(px_per_mm, 1), 0);
@@ -147,7 +147,7 @@ TEST_CASE("the bound admits either rung", "[bounds]") {
       CHECK(reference.scattered(1, 0) < 0.6);
       return reference.scattered_bound(1, 0);
     };
-    // A flat cell takes the nearest part of a rung, so that it changes a sixteenth of a rung earlier.
+    // A flat block takes the nearest part of a level, so that it changes a sixteenth of a level earlier.
     const double change = flat ? 1.0625 - 1.0 / 256 : 1.0625;
     CHECK(bound_at(change) > 0.4);
     CHECK(bound_at(change + 1e-4) < 1e-5);
@@ -159,7 +159,7 @@ TEST_CASE("the bound admits taps rotated or not", "[bounds]") {
   Material material = tiny_material();
   material.taps.radius_mm = 8;
   material.taps.terms[0].falloff = linear_table(0, {0.25});
-  material.taps.rungs = {made_rung(1, {8}, 1)};
+  material.taps.levels = {made_level(1, {8}, 1)};
   MadeFrame made(17, 17, Camera::orthographic(1, 1), 0);
   for (const std::size_t x : {0U, 16U}) made.light[3 * (17 * 8 + x)] = 1;
   Options options;

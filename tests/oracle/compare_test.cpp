@@ -3,8 +3,8 @@
 #include <cmath>
 #include <limits>
 
-#include "support/catch.hpp"
 #include "dermis/error.hpp"
+#include "support/catch.hpp"
 
 namespace dermis::oracle {
 

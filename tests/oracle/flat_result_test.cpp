@@ -1,36 +1,36 @@
-// What flat cells make of the light, by hand.
+// What flat blocks make of the light, by hand.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <span>
 #include <vector>
 
-#include "support/catch.hpp"
 #include "dermis/oracle/reference.hpp"
 #include "oracle/flat_run.hpp"
 #include "oracle/made_frame.hpp"
 #include "oracle/made_taps.hpp"
-#include "support/random.hpp"
 #include "oracle/separable_run.hpp"
+#include "support/catch.hpp"
+#include "support/random.hpp"
 
 namespace dermis::oracle {
 
 namespace {
 
 /// One line of a pass by flat weights.
-std::vector<double> convolved(const std::vector<double>& x, const Rung& rung, const Term& term, std::size_t t,
+std::vector<double> convolved(const std::vector<double>& x, const TapLevel& level, const Term& term, std::size_t t,
                               std::size_t terms) {
   std::vector<double> result;
   for (std::size_t i = 0; i < x.size(); ++i) {
     const auto weight = [&](std::size_t point) {
-      return static_cast<double>(rung.flat_weights[0][point * terms + t][0]);
+      return static_cast<double>(level.flat_weights[0][point * terms + t][0]);
     };
     double weights = weight(0);
     double sum = weights * x[i];
     double differences = static_cast<double>(term.sum[0]) * x[i];
-    for (std::size_t pair = 0; pair < rung.offsets_px.size(); ++pair) {
+    for (std::size_t pair = 0; pair < level.offsets_px.size(); ++pair) {
       for (const int sign : {-1, 1}) {
-        const auto j = i + static_cast<std::size_t>(sign * rung.offsets_px[pair]);  // wraps round below 0
+        const auto j = i + static_cast<std::size_t>(sign * level.offsets_px[pair]);  // wraps round below 0
         if (j >= x.size()) continue;
         weights += weight(pair + 1);
         sum += weight(pair + 1) * x[j];
@@ -62,9 +62,9 @@ Lines light_of(const MadeFrame& made) {
 }
 
 /// One term, across and then down.
-Lines convolved_twice(Lines lines, const Rung& rung, const Term& term, std::size_t t, std::size_t terms) {
+Lines convolved_twice(Lines lines, const TapLevel& level, const Term& term, std::size_t t, std::size_t terms) {
   for (int pass = 0; pass < 2; ++pass) {
-    for (std::vector<double>& line : lines) line = convolved(line, rung, term, t, terms);
+    for (std::vector<double>& line : lines) line = convolved(line, level, term, t, terms);
     lines = transposed(lines);
   }
   return lines;
@@ -76,11 +76,11 @@ TEST_CASE("on a plane parallel to the screen the passes are plain convolutions",
   Random random(41);
   Material material = tiny_material();
   material.taps.radius_mm = 5;
-  material.taps.rungs = {made_rung(1, {1, 2, 5}, 0)};  // but for the flat weights nothing would be scattered
+  material.taps.levels = {made_level(1, {1, 2, 5}, 0)};  // but for the flat weights nothing would be scattered
   add_term(material.taps, tiny_difference(0.125, 0.5), {});
   material.taps.terms[1].scale = grey(-0.75);
-  Rung& rung = material.taps.rungs[0];
-  lay_flat(rung, material.taps.terms, [&](std::size_t pair, std::size_t t, std::size_t) {
+  TapLevel& level = material.taps.levels[0];
+  lay_flat(level, material.taps.terms, [&](std::size_t pair, std::size_t t, std::size_t) {
     return random.uniform(t == 0 ? 0.02 : -0.2, 0.2) / static_cast<double>(pair + 1);
   });
   const auto made_with = [](const Camera& camera, bool has_depth) {
@@ -93,8 +93,8 @@ TEST_CASE("on a plane parallel to the screen the passes are plain convolutions",
     for (float& light : made.light) light = static_cast<float>(random.uniform(0, 1));
     const Reference reference = run_as_is(made, std::span(&material, 1));
     const Lines light = light_of(made);
-    const Lines mean = convolved_twice(light, rung, material.taps.terms[0], 0, 2);
-    const Lines differences = convolved_twice(light, rung, material.taps.terms[1], 1, 2);
+    const Lines mean = convolved_twice(light, level, material.taps.terms[0], 0, 2);
+    const Lines differences = convolved_twice(light, level, material.taps.terms[1], 1, 2);
     double change = 0;
     for (std::size_t y = 0; y < light.size(); ++y) {
       for (std::size_t x = 0; x < light[y].size(); ++x) {
@@ -109,14 +109,14 @@ TEST_CASE("on a plane parallel to the screen the passes are plain convolutions",
   }
 }
 
-TEST_CASE("on a smooth cell the weights change with the pixel's own surface", "[flat]") {
-  // Depth 0.01 x^2 beside a sharp bend, all within one cell: slopes from 0 to 0.8.
+TEST_CASE("on a smooth block the weights change with the pixel's own surface", "[flat]") {
+  // Depth 0.01 x^2 beside a sharp bend, all within one block: slopes from 0 to 0.8.
   const auto depth_mm = [](int x) { return x < 8 ? 0.05 * x * x : 3.2 + 0.8 * (x - 8); };
-  const MadeFrame made = row_of_cells(16, depth_mm);
+  const MadeFrame made = row_of_blocks(16, depth_mm);
   Material material = telling_material(5);
-  const int rung = rung_for(5 / std::hypot(1, 0.4));
-  Rung& its = material.taps.rungs[static_cast<std::size_t>(rung)];
-  its = made_rung(0.875, {1, 3}, 0);
+  const int level = level_for(5 / std::hypot(1, 0.4));
+  TapLevel& its = material.taps.levels[static_cast<std::size_t>(level)];
+  its = made_level(0.875, {1, 3}, 0);
   lay_flat(its, material.taps.terms, [](std::size_t pair, std::size_t, std::size_t) { return pair == 0 ? 0.25 : 0.1; });
   lay_smooth(
       its, 1, [](std::size_t pair, std::size_t, std::size_t) { return pair == 0 ? -0.125 : 0.0625; },
@@ -139,14 +139,14 @@ TEST_CASE("on a smooth cell the weights change with the pixel's own surface", "[
   }
 }
 
-TEST_CASE("a flat cell seen at such an angle that the kernel is narrow has no taps", "[flat]") {
+TEST_CASE("a flat block seen at such an angle that the kernel is narrow has no taps", "[flat]") {
   // |T| = sqrt(2): 0.42 px.
   Material material = telling_material(0.6);
   add_term(material.taps, tiny_difference(0.25, 2), {});
-  lay_flat(material.taps.rungs[3], material.taps.terms,
+  lay_flat(material.taps.levels[3], material.taps.terms,
            [](std::size_t pair, std::size_t, std::size_t) { return pair == 0 ? 0.25 : 0; });
   for (const double g : {0.0, 1.0}) {
-    const MadeFrame made = row_of_cells(16, [=](int x) { return g * x; });
+    const MadeFrame made = row_of_blocks(16, [=](int x) { return g * x; });
     const Reference reference = run_as_is(made, std::span(&material, 1));
     // Along x the mean, and twice the light; then down, where the light is the same all over, twice again.
     const double taken = 2 * 0.25;
@@ -154,15 +154,15 @@ TEST_CASE("a flat cell seen at such an angle that the kernel is narrow has no ta
   }
 }
 
-TEST_CASE("taps that fall on another material are left out of a flat cell", "[flat]") {
+TEST_CASE("taps that fall on another material are left out of a flat block", "[flat]") {
   const std::vector materials{telling_material(5, 1), telling_material(7, 2)};
   MadeFrame made = step(32, 8, 0);
   for (std::size_t i = 0; i < made.pixels(); ++i) made.material.push_back(i % 32 < 6 ? 1 : 2);
   const Reference reference = run_as_is(made, materials);
-  CHECK(told(reference, 4, 2, false) == rung_for(5));
-  CHECK(told(reference, 7, 2, false) == rung_for(7));
-  const double left = 0.125 + rung_for(5) / 1024.0;
-  const double right = 0.125 + rung_for(7) / 1024.0;
+  CHECK(told(reference, 4, 2, false) == level_for(5));
+  CHECK(told(reference, 7, 2, false) == level_for(7));
+  const double left = 0.125 + level_for(5) / 1024.0;
+  const double right = 0.125 + level_for(7) / 1024.0;
   CHECK(reference.scattered(5, 2) == Approx(((1 - 2 * left) * 25 + left * 16) / (1 - left)).epsilon(1e-14));
   CHECK(reference.scattered(6, 2) == Approx(((1 - 2 * right) * 36 + right * 49) / (1 - right)).epsilon(1e-14));
 }

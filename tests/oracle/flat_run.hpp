@@ -1,4 +1,4 @@
-// Materials and frames that show which cells are flat.
+// Materials and frames that show which blocks are flat.
 #pragma once
 
 #include <algorithm>
@@ -16,15 +16,15 @@
 
 namespace dermis::oracle {
 
-/// What a rung has on a smooth cell as its number.
+/// What a level has on a smooth block as its number.
 constexpr int smooth = 1536;
 
-/// The kernel radius where a rung begins, px.
-inline double first_radius_px(int rung) { return std::ldexp(0.5 * (1 + rung % 16 / 16.0), rung / 16); }
+/// The kernel radius where a level begins, px.
+inline double first_radius_px(int level) { return std::ldexp(0.5 * (1 + level % 16 / 16.0), level / 16); }
 
-/// A kernel of `radius_mm` with a pair of taps on the neighbours, on every rung. On flat cells they are worth 1/8 + the
-/// number of the rung / 1024 each, on smooth ones 3/2 more, on others nothing, as they have no length. Another pair, as
-/// far away as the kernel goes, is worth nothing at all.
+/// A kernel of `radius_mm` with a pair of taps on the neighbours, on every level. On flat blocks they are worth 1/8 +
+/// the number of the level / 1024 each, on smooth ones 3/2 more, on others nothing, as they have no length. Another
+/// pair, as far away as the kernel goes, is worth nothing at all.
 inline Material telling_material(double radius_mm, int id = 0) {
   Material material;
   material.id = id;
@@ -32,14 +32,14 @@ inline Material telling_material(double radius_mm, int id = 0) {
   material.taps.relative_width = {1, 1, 1};
   material.taps.terms.push_back(tiny_term(0.25, 0.5));
   for (int i = 0; i < 8 * 16; ++i) {
-    // The pixels are all larger than those of the rungs, by as much as counts.
-    material.taps.rungs.push_back(made_rung(100, {1, std::max(2, static_cast<int>(first_radius_px(i)))}, 0));
-    Rung& rung = material.taps.rungs.back();
+    // The pixels are all larger than those of the levels, by as much as counts.
+    material.taps.levels.push_back(made_level(100, {1, std::max(2, static_cast<int>(first_radius_px(i)))}, 0));
+    TapLevel& level = material.taps.levels.back();
     const auto on_neighbours = [](double weight) {
       return [=](std::size_t pair, std::size_t, std::size_t) { return pair == 0 ? weight : 0; };
     };
-    lay_flat(rung, material.taps.terms, on_neighbours(0.125 + i / 1024.0));
-    lay_smooth(rung, 1, on_neighbours(1.5 / static_cast<double>(Taps::most_stretch)), on_neighbours(0));
+    lay_flat(level, material.taps.terms, on_neighbours(0.125 + i / 1024.0));
+    lay_smooth(level, 1, on_neighbours(1.5 / static_cast<double>(Taps::most_stretch)), on_neighbours(0));
   }
   return material;
 }
@@ -47,8 +47,8 @@ inline Material telling_material(double radius_mm, int id = 0) {
 constexpr int not_flat = -2;
 constexpr int no_taps = -1;
 
-/// The rung for a kernel radius.
-inline int rung_for(double radius_px) {
+/// The level for a kernel radius.
+inline int level_for(double radius_px) {
   const double octave = std::floor(std::log2(2 * radius_px));
   return static_cast<int>(16 * octave + std::floor(16 * (2 * radius_px / std::exp2(octave) - 1)));
 }
@@ -62,9 +62,8 @@ inline void light_squares(MadeFrame& made, bool down) {
   }
 }
 
-/// The rung of the flat or smooth cell in which a pixel lies, as told by the light of squares; not_flat if it keeps its
-/// light.
-/// Both neighbours must be of the same material.
+/// The level of the flat or smooth block in which a pixel lies, as told by the light of squares; not_flat if it keeps
+/// its light. Both neighbours must be of the same material.
 inline int told(const Reference& reference, int x, int y, bool down) {
   const double place = down ? y : x;
   const double gain = (reference.scattered(x, y) - place * place) / 2;
@@ -101,8 +100,8 @@ inline Reference run_as_is(const MadeFrame& made, std::span<const Material> mate
   return separable(made.frame(), materials, options);
 }
 
-/// A row of cells of 1 px per mm, its depth in mm as a function of x.
-inline MadeFrame row_of_cells(int width, const std::function<double(int)>& depth_mm) {
+/// A row of blocks of 1 px per mm, its depth in mm as a function of x.
+inline MadeFrame row_of_blocks(int width, const std::function<double(int)>& depth_mm) {
   MadeFrame made(width, 5, one_px_per_mm);
   for (int i = 0; i < 5 * width; ++i) made.depth.push_back(static_cast<float>(depth_mm(i % width)));
   light_squares(made, false);
@@ -111,7 +110,7 @@ inline MadeFrame row_of_cells(int width, const std::function<double(int)>& depth
 
 /// A plane that jumps by `by_mm` at x = `at`.
 inline MadeFrame step(int width, int at, double by_mm) {
-  return row_of_cells(width, [=](int x) { return x < at ? 10 : 10 + by_mm; });
+  return row_of_blocks(width, [=](int x) { return x < at ? 10 : 10 + by_mm; });
 }
 
 }  // namespace dermis::oracle

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "dermis/oracle/reference.hpp"
-#include "oracle/float_cells.hpp"
+#include "oracle/float_blocks.hpp"
 #include "oracle/float_surface.hpp"
 #include "oracle/made_frame.hpp"
 
@@ -32,8 +32,8 @@ class FloatFilter {
         options_(options),
         style_(style),
         pixels_(FloatSurface(made, materials, options).pixels),
-        cells_{FloatCells(0, made, materials, options, pixels_, style.fused),
-               FloatCells(1, made, materials, options, pixels_, style.fused)} {
+        blocks_{FloatBlocks(0, made, materials, options, pixels_, style.fused),
+                FloatBlocks(1, made, materials, options, pixels_, style.fused)} {
     std::vector<float> x;
     for (const FloatPixel& pixel : pixels_) x.insert(x.end(), pixel.x.begin(), pixel.x.end());
     scatter(x);
@@ -44,14 +44,14 @@ class FloatFilter {
   std::vector<float> result;
 
   /// Of both passes.
-  int flat_cells() const { return count(&FloatCell::flat); }
-  int smooth_cells() const { return count(&FloatCell::smooth); }
+  int flat_blocks() const { return count(&FloatBlock::flat); }
+  int smooth_blocks() const { return count(&FloatBlock::smooth); }
 
  private:
-  int count(bool FloatCell::*shape) const {
+  int count(bool FloatBlock::*shape) const {
     int count = 0;
-    for (const FloatCells& pass : cells_) {
-      for (const FloatCell& cell : pass.cells) count += cell.*shape ? 1 : 0;
+    for (const FloatBlocks& pass : blocks_) {
+      for (const FloatBlock& block : pass.blocks) count += block.*shape ? 1 : 0;
     }
     return count;
   }
@@ -132,56 +132,56 @@ class FloatFilter {
     const FloatPixel& pixel = pixels_[p];
     const dermis::Taps& taps = taps_of(pixel);
     const dermis::Term& term = taps.terms[t];
-    const FloatCell& cell = cells_[static_cast<std::size_t>(axis)].at(x, y);
+    const FloatBlock& block = blocks_[static_cast<std::size_t>(axis)].at(x, y);
     const float radius_mm = static_cast<float>(taps.radius_mm);
-    const bool plane = cell.flat || cell.smooth;
-    const float radius_px = plane ? radius_mm / cell.change_mm : cell.footprint * radius_mm;
+    const bool plane = block.flat || block.smooth;
+    const float radius_px = plane ? radius_mm / block.change_mm : block.px_per_mm * radius_mm;
     for (std::size_t c = 0; c < 3; ++c) {
       const float own = input[3 * p + c];
       if (!pixel.touched() || radius_px < 0.5F) {
         output[c] = term.normalised ? own : term.sum[c] * own;
         continue;
       }
-      const int step = float_step(radius_px, cell.flat, taps);
-      const dermis::Rung& rung = taps.rungs[step / 8];
-      const auto& flat_weights = rung.flat_weights[cell.flat ? step % 8 : 4];
-      const FloatBend bend = cell.smooth ? bend_at(axis, x, y, rung) : FloatBend{};
+      const int step = float_step(radius_px, block.flat, taps);
+      const dermis::TapLevel& level = taps.levels[step / 8];
+      const auto& flat_weights = level.flat_weights[block.flat ? step % 8 : 4];
+      const FloatBend bend = block.smooth ? bend_at(axis, x, y, level) : FloatBend{};
       float weights = 0;
-      if (term.normalised && cell.flat) {
+      if (term.normalised && block.flat) {
         weights = flat_weights[t][c];
-      } else if (term.normalised && cell.smooth) {
-        weights = multiply_add(bend.stretch, rung.stretch_weights[t][c], flat_weights[t][c]);
+      } else if (term.normalised && block.smooth) {
+        weights = multiply_add(bend.stretch, level.stretch_weights[t][c], flat_weights[t][c]);
       } else if (term.normalised) {
-        const float half_width = rung.core_half_width_px * pixel.segment[axis] / pixel.k[c];
-        weights = rung.core_gain[t][c] * look_up(term.core, c, half_width * half_width);
+        const float half_width = level.centre_half_width_px * pixel.segment[axis] / pixel.k[c];
+        weights = level.centre_gain[t][c] * look_up(term.centre, c, half_width * half_width);
       }
-      float first_weights = plane ? 0 : first_core(axis, pixel, rung, c);
+      float first_weights = plane ? 0 : first_centre(axis, pixel, level, c);
       float sum = weights * own;
       const bool about_own = !term.normalised && style_.differences;
-      for (std::size_t n = 0; n < rung.offsets_px.size(); ++n) {
-        const std::size_t i = style_.backwards ? rung.offsets_px.size() - 1 - n : n;
-        const int straight = rung.offsets_px[i];
+      for (std::size_t n = 0; n < level.offsets_px.size(); ++n) {
+        const std::size_t i = style_.backwards ? level.offsets_px.size() - 1 - n : n;
+        const int straight = level.offsets_px[i];
         std::array<int, 2> offset{axis == 0 ? straight : 0, axis == 0 ? 0 : straight};
-        const double reach = options_.jitter * static_cast<double>(rung.footprint) * taps.radius_mm;
+        const double reach = options_.jitter * static_cast<double>(level.px_per_mm) * taps.radius_mm;
         const bool turns = straight <= reach;
         if (turns) offset = turned(axis, x, y, straight);
         for (const int sign : {-1, 1}) {
           int tx = x + sign * offset[0];
           const int ty = y + sign * offset[1];
-          if (axis == 1 && !turns) tx += float_side(plane ? cell.shear : pixel.shear, sign * straight);
+          if (axis == 1 && !turns) tx += float_side(plane ? block.shear : pixel.shear, sign * straight);
           if (tx < 0 || ty < 0 || tx >= made_.width || ty >= made_.height) continue;
           const std::size_t q = static_cast<std::size_t>(ty) * made_.width + tx;
           if (pixels_[q].material != pixel.material || pixels_[q].bad) continue;
           const std::size_t at = (i + 1) * taps.terms.size() + t;
-          float weight = plane ? flat_weights[at][c] : weigh(axis, p, q, rung, i, t, c);
-          if (cell.smooth) {
-            weight = multiply_add(bend.stretch, rung.stretch_weights[at][c], weight);
+          float weight = plane ? flat_weights[at][c] : weigh(axis, p, q, level, i, t, c);
+          if (block.smooth) {
+            weight = multiply_add(bend.stretch, level.stretch_weights[at][c], weight);
             const float skew = static_cast<float>(sign) * bend.skew;
-            weight = multiply_add(skew, rung.skew_weights[i * taps.terms.size() + t][c], weight);
+            weight = multiply_add(skew, level.skew_weights[i * taps.terms.size() + t][c], weight);
           }
           const float light = input[3 * q + c];
           weights += weight;
-          if (!plane) first_weights += t == 0 ? weight : weigh(axis, p, q, rung, i, 0, c);
+          if (!plane) first_weights += t == 0 ? weight : weigh(axis, p, q, level, i, 0, c);
           sum = multiply_add(weight, about_own ? light - own : light, sum);
         }
       }
@@ -199,9 +199,9 @@ class FloatFilter {
   }
 
   /// The weight of the pixel itself in the first term.
-  float first_core(int axis, const FloatPixel& pixel, const dermis::Rung& rung, std::size_t c) const {
-    const float half_width = rung.core_half_width_px * pixel.segment[axis] / pixel.k[c];
-    return rung.core_gain[0][c] * look_up(taps_of(pixel).terms[0].core, c, half_width * half_width);
+  float first_centre(int axis, const FloatPixel& pixel, const dermis::TapLevel& level, std::size_t c) const {
+    const float half_width = level.centre_half_width_px * pixel.segment[axis] / pixel.k[c];
+    return level.centre_gain[0][c] * look_up(taps_of(pixel).terms[0].centre, c, half_width * half_width);
   }
 
   struct FloatBend {
@@ -209,7 +209,7 @@ class FloatFilter {
     float skew = 0;
   };
 
-  FloatBend bend_at(int axis, int x, int y, const dermis::Rung& rung) const {
+  FloatBend bend_at(int axis, int x, int y, const dermis::TapLevel& level) const {
     const int place[2] = {x, y};
     const int size[2] = {made_.width, made_.height};
     const int next = axis == 0 ? 1 : made_.width;
@@ -225,7 +225,7 @@ class FloatFilter {
     if (!has_after) after = before;
     float slope = (before + after) / 2;
     float bent = after - before;
-    const int shear = cells_[static_cast<std::size_t>(axis)].at(x, y).shear;
+    const int shear = blocks_[static_cast<std::size_t>(axis)].at(x, y).shear;
     const float side = static_cast<float>(shear) / 4096;
     if (shear != 0) {
       const bool has_left = x > 0 && shows(p - 1);
@@ -248,22 +248,22 @@ class FloatFilter {
     for (int j = 0; j < 2; ++j) {
       const float ray = perspective ? pixel.position[j] / pixel.position[2] : 0;
       const float columns = j == axis ? 1 : side;
-      const float change = ray * slope + columns / pixel.footprint[j];
+      const float change = ray * slope + columns / pixel.px_per_mm[j];
       float change_of_change = ray * bent;
-      if (perspective) change_of_change += 2 * columns * slope / (pixel.footprint[j] * pixel.position[2]);
+      if (perspective) change_of_change += 2 * columns * slope / (pixel.px_per_mm[j] * pixel.position[2]);
       length2 = multiply_add(change, change, length2);
       growth = multiply_add(change, change_of_change, growth);
     }
-    const float square = rung.footprint * rung.footprint;
-    const float most = rung.offsets_px.empty() ? 0 : 0.5F / static_cast<float>(rung.offsets_px.back());
+    const float square = level.px_per_mm * level.px_per_mm;
+    const float most = level.offsets_px.empty() ? 0 : 0.5F / static_cast<float>(level.offsets_px.back());
     return {std::clamp(square * length2 - 1, -0.75F, 0.75F), std::clamp(square * growth, -most, most)};
   }
 
-  float weigh(int axis, std::size_t p, std::size_t q, const dermis::Rung& rung, std::size_t pair, std::size_t t,
+  float weigh(int axis, std::size_t p, std::size_t q, const dermis::TapLevel& level, std::size_t pair, std::size_t t,
               std::size_t c) const {
     const FloatPixel& pixel = pixels_[p];
     const dermis::Taps& taps = taps_of(pixel);
-    const dermis::TapWeight& tap = rung.weights[pair * taps.terms.size() + t];
+    const dermis::TapWeight& tap = level.weights[pair * taps.terms.size() + t];
     float r2 = 0;
     for (std::size_t i = 0; i < 3; ++i) {
       const float d = pixels_[q].position[i] - pixel.position[i];
@@ -271,8 +271,8 @@ class FloatFilter {
     }
     const float scaled = r2 / (pixel.k[c] * pixel.k[c]);
     const float falloff = look_up(taps.terms[t].falloff, c, scaled * scaled);
-    const float weight = rung.footprint * pixels_[q].segment[axis] * tap.length_mm[c] * falloff / pixel.k[c];
-    return t == 0 ? weight : multiply_add(tap.share[c], weigh(axis, p, q, rung, pair, 0, c), weight);
+    const float weight = level.px_per_mm * pixels_[q].segment[axis] * tap.length_mm[c] * falloff / pixel.k[c];
+    return t == 0 ? weight : multiply_add(tap.share[c], weigh(axis, p, q, level, pair, 0, c), weight);
   }
 
   void compose() {
@@ -294,5 +294,5 @@ class FloatFilter {
   dermis::Options options_;
   FloatStyle style_;
   std::vector<FloatPixel> pixels_;
-  std::array<FloatCells, 2> cells_;
+  std::array<FloatBlocks, 2> blocks_;
 };

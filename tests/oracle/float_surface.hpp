@@ -15,7 +15,7 @@ struct FloatPixel {
   bool bad = false;
   bool wide = false;
   std::array<float, 3> position{};
-  std::array<float, 2> footprint{};
+  std::array<float, 2> px_per_mm{};
   std::array<float, 2> segment{};
   int shear = 0;      ///< columns per row of the vertical pass, times 4096
   float covered = 1;  ///< share
@@ -81,7 +81,7 @@ class FloatSurface {
     const float per_px = made_.camera.projection == dermis::Camera::Projection::perspective ? z : mm;
     const int column = static_cast<int>(i) % made_.width;
     const int row = static_cast<int>(i) / made_.width;
-    pixel.footprint = {sx / per_px, sy / per_px};
+    pixel.px_per_mm = {sx / per_px, sy / per_px};
     pixel.position = {(static_cast<float>(column) + 0.5F - static_cast<float>(made_.camera.center_x)) * per_px / sx,
                       (static_cast<float>(row) + 0.5F - static_cast<float>(made_.camera.center_y)) * per_px / sy, z};
     for (std::size_t c = 0; c < 3; ++c) {
@@ -93,7 +93,7 @@ class FloatSurface {
       pixel.spread = std::fmax(pixel.spread, pixel.k[c] * material.taps.relative_width[c]);
     }
     const float radius = static_cast<float>(material.taps.radius_mm);
-    pixel.wide = std::fmax(pixel.footprint[0], pixel.footprint[1]) * pixel.spread * radius >= 0.5F;
+    pixel.wide = std::fmax(pixel.px_per_mm[0], pixel.px_per_mm[1]) * pixel.spread * radius >= 0.5F;
   }
 
   void measure_segments(std::size_t i) {
@@ -118,7 +118,7 @@ class FloatSurface {
       if (std::isnan(slope) || forward * backward <= 0) slope = 0;
       for (int j = 0; j < 2; ++j) {
         const float ray = perspective ? pixel.position[j] / pixel.position[2] : 0;
-        tangents[axis][j] = ray * slope + (j == axis ? 1 / pixel.footprint[j] : 0);
+        tangents[axis][j] = ray * slope + (j == axis ? 1 / pixel.px_per_mm[j] : 0);
       }
       tangents[axis][2] = slope;
     }

@@ -7,8 +7,8 @@
 #include <limits>
 #include <vector>
 
-#include "support/catch.hpp"
 #include "dermis/error.hpp"
+#include "support/catch.hpp"
 #include "support/random.hpp"
 
 namespace dermis::oracle {

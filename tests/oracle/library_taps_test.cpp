@@ -3,12 +3,12 @@
 #include <cmath>
 #include <span>
 
-#include "support/catch.hpp"
 #include "dermis/oracle/compare.hpp"
 #include "dermis/oracle/reference.hpp"
 #include "dermis/oracle/scenes.hpp"
 #include "dermis/profile.hpp"
 #include "oracle/made_frame.hpp"
+#include "support/catch.hpp"
 
 namespace dermis::oracle {
 
@@ -25,11 +25,11 @@ Material material_of(const Profile& profile, int taps, int id = 1) {
 }
 
 /// Largest distance of a filtered step from the profile's own edge, at about 4 px per mm: where flat weights are exact,
-/// at the footprint of their rung.
+/// at the px_per_mm of their level.
 double edge_error(const Profile& profile, int taps) {
   const Material material = material_of(profile, taps);
-  const int index = Taps::rung_index(static_cast<float>(4 * material.taps.radius_mm));
-  const auto px_per_mm = static_cast<double>(material.taps.rungs[static_cast<std::size_t>(index)].footprint);
+  const int index = Taps::level_index(static_cast<float>(4 * material.taps.radius_mm));
+  const auto px_per_mm = static_cast<double>(material.taps.levels[static_cast<std::size_t>(index)].px_per_mm);
   const int half = 24;
   MadeFrame made(2 * half, 1, Camera::orthographic(px_per_mm, px_per_mm), 0);
   for (int x = half; x < 2 * half; ++x) MadeFrame::set_rgb(made.light, static_cast<std::size_t>(x), 1, 1, 1);

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <cstdint>
 
-#include "support/catch.hpp"
 #include "oracle/made_table.hpp"
+#include "support/catch.hpp"
 #include "support/random.hpp"
 
 namespace dermis::oracle {

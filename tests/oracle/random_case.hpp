@@ -16,21 +16,21 @@
 
 namespace dermis::oracle {
 
-/// A Gaussian with a ladder of rungs for kernels of 1/2 to 32 px, taps on every pixel or every second.
-inline Material ladder_material(double sigma_mm, int id, int step_px) {
+/// A Gaussian with a level table of levels for kernels of 1/2 to 32 px, taps on every pixel or every second.
+inline Material level_material(double sigma_mm, int id, int step_px) {
   Material material = gaussian_material(sigma_mm, 1, id);
   Taps& taps = material.taps;
   taps.relative_width = {1, 0.9F, 0.7F};
-  taps.rungs.clear();
+  taps.levels.clear();
   for (int i = 0; i < 6 * 16; ++i) {
     const double radius_px = std::ldexp(0.5 * (1 + (i % 16 + 0.5) / 16), i / 16);
     const double px_per_mm = radius_px / taps.radius_mm;
     const auto length = static_cast<float>(step_px / px_per_mm);
     std::vector<int> offsets_px;
     for (int offset = step_px; offset < radius_px; offset += step_px) offsets_px.push_back(offset);
-    Rung rung = made_rung(px_per_mm, offsets_px, 0);
-    for (TapWeight& weight : rung.weights) weight.length_mm = {length, length * 0.9F, length * 1.1F};
-    taps.rungs.push_back(rung);
+    TapLevel level = made_level(px_per_mm, offsets_px, 0);
+    for (TapWeight& weight : level.weights) weight.length_mm = {length, length * 0.9F, length * 1.1F};
+    taps.levels.push_back(level);
   }
   lay_flat(taps);
   return material;
@@ -38,19 +38,19 @@ inline Material ladder_material(double sigma_mm, int id, int step_px) {
 
 /// Flat weights that have nothing to do with the others.
 inline void lay_random_flat(Random& random, Taps& taps) {
-  for (Rung& rung : taps.rungs) {
-    const auto taps_of_rung = static_cast<double>(2 * rung.offsets_px.size() + 1);
-    lay_flat(rung, taps.terms, [&](std::size_t, std::size_t t, std::size_t) {
-      return random.uniform(taps.terms[t].normalised ? 0 : -1, 1) / taps_of_rung;  // weights of a mean do not cancel
+  for (TapLevel& level : taps.levels) {
+    const auto taps_of_level = static_cast<double>(2 * level.offsets_px.size() + 1);
+    lay_flat(level, taps.terms, [&](std::size_t, std::size_t t, std::size_t) {
+      return random.uniform(taps.terms[t].normalised ? 0 : -1, 1) / taps_of_level;  // weights of a mean do not cancel
     });
     const PairNumber any = [&](std::size_t, std::size_t, std::size_t) {
-      return random.uniform(-0.2, 0.2) / taps_of_rung;
+      return random.uniform(-0.2, 0.2) / taps_of_level;
     };
-    lay_smooth(rung, taps.terms.size(), any, any);
+    lay_smooth(level, taps.terms.size(), any, any);
   }
 }
 
-/// Adds up to `most` terms of either kind, each of other taps on each rung.
+/// Adds up to `most` terms of either kind, each of other taps on each level.
 inline void add_terms(Random& random, Taps& taps, double sigma_mm, int most) {
   const auto any = [&](double low, double high) {
     std::array<float, 3> values{};
@@ -64,12 +64,12 @@ inline void add_terms(Random& random, Taps& taps, double sigma_mm, int most) {
     add_term(taps, term, {}, random.uniform(0.5, 1));
     const std::size_t terms = taps.terms.size();
     const bool shares = random.coin();
-    for (Rung& rung : taps.rungs) {
-      const double length = random.uniform(0, 1) * static_cast<double>(1 / rung.footprint);
-      for (std::size_t i = terms - 1; i < rung.weights.size(); i += terms) {
+    for (TapLevel& level : taps.levels) {
+      const double length = random.uniform(0, 1) * static_cast<double>(1 / level.px_per_mm);
+      for (std::size_t i = terms - 1; i < level.weights.size(); i += terms) {
         // Weights of a mean do not cancel.
-        rung.weights[i].length_mm = any(term.normalised ? 0 : -length, length);
-        if (shares) rung.weights[i].share = any(term.normalised ? 0 : -1, 1);
+        level.weights[i].length_mm = any(term.normalised ? 0 : -length, length);
+        if (shares) level.weights[i].share = any(term.normalised ? 0 : -1, 1);
       }
     }
   }
@@ -103,7 +103,7 @@ inline void add_depth(Random& random, MadeFrame& made, double distance_mm, doubl
   }
 }
 
-/// `plain`: without a mask, so that cells may be flat.
+/// `plain`: without a mask, so that blocks may be flat.
 inline MadeFrame random_frame(Random& random, int width, int height, bool plain) {
   const double pixels_per_mm = random.uniform(1, 6);
   const bool perspective = random.coin();

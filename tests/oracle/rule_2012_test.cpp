@@ -3,9 +3,9 @@
 #include <cmath>
 #include <vector>
 
-#include "support/catch.hpp"
 #include "dermis/error.hpp"
 #include "oracle/made_frame.hpp"
+#include "support/catch.hpp"
 
 using dermis::Camera;
 using dermis::oracle::Picture;

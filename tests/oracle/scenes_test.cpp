@@ -4,8 +4,8 @@
 #include <cmath>
 #include <set>
 
-#include "support/catch.hpp"
 #include "dermis/error.hpp"
+#include "support/catch.hpp"
 
 namespace dermis::oracle {
 

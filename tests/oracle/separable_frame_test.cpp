@@ -4,13 +4,13 @@
 #include <limits>
 #include <vector>
 
-#include "support/catch.hpp"
 #include "dermis/error.hpp"
 #include "dermis/oracle/reference.hpp"
 #include "oracle/made_frame.hpp"
 #include "oracle/made_taps.hpp"
-#include "support/random.hpp"
 #include "oracle/separable_run.hpp"
+#include "support/catch.hpp"
+#include "support/random.hpp"
 
 namespace dermis::oracle {
 

@@ -3,16 +3,16 @@
 #include <cmath>
 #include <span>
 
-#include "support/catch.hpp"
 #include "dermis/oracle/reference.hpp"
 #include "oracle/made_frame.hpp"
 #include "oracle/made_taps.hpp"
 #include "oracle/separable_run.hpp"
+#include "support/catch.hpp"
 
 namespace dermis::oracle {
 
 TEST_CASE("a step on a plane becomes the edge profile", "[separable]") {
-  // On flat cells the weights are the profile's values at the middles of pixels, so that an edge is off by h^2 / 24
+  // On flat blocks the weights are the profile's values at the middles of pixels, so that an edge is off by h^2 / 24
   // times its steepest slope, 1.01e-4. Elsewhere they are those of its tables, off by what parabolas are. An edge sums
   // up half of them, over a sum that may be as far off.
   const double sigma_mm = 2.5;
@@ -26,8 +26,8 @@ TEST_CASE("a step on a plane becomes the edge profile", "[separable]") {
     }
     Material material = gaussian_material(sigma_mm, px_per_mm);
     const Term& term = material.taps.terms[0];
-    double table_error = std::abs(value_of(term.core, 0, 1.0 / 8) - gaussian_strip(0.125, sigma_mm));
-    for (const int offset : material.taps.rungs[0].offsets_px) {
+    double table_error = std::abs(value_of(term.centre, 0, 1.0 / 8) - gaussian_strip(0.125, sigma_mm));
+    for (const int offset : material.taps.levels[0].offsets_px) {
       const double r_mm = offset / px_per_mm;
       table_error += 2 * std::abs(value_of(term.falloff, 0, r_mm * r_mm) - gaussian_line(r_mm, sigma_mm)) / px_per_mm;
     }
@@ -44,9 +44,9 @@ TEST_CASE("a step on a plane becomes the edge profile", "[separable]") {
     const double by_table = worst_error(never_flat(made));
     CHECK(by_table < 1.05e-4 + table_error);
     CHECK(table_error < 0.02);
-    Rung& rung = material.taps.rungs[0];
-    lay_flat(rung, material.taps.terms, [&](std::size_t pair, std::size_t, std::size_t) {
-      return gaussian_line(rung.offsets_px[pair] / px_per_mm, sigma_mm) / px_per_mm;
+    TapLevel& level = material.taps.levels[0];
+    lay_flat(level, material.taps.terms, [&](std::size_t pair, std::size_t, std::size_t) {
+      return gaussian_line(level.offsets_px[pair] / px_per_mm, sigma_mm) / px_per_mm;
     });
     const double flat = worst_error(made);
     CHECK(flat < 1.05e-4);
@@ -54,7 +54,7 @@ TEST_CASE("a step on a plane becomes the edge profile", "[separable]") {
   }
 }
 
-TEST_CASE("the footprint scales the kernel in millimetres, whatever the camera", "[separable]") {
+TEST_CASE("the px_per_mm scales the kernel in millimetres, whatever the camera", "[separable]") {
   // A Gaussian of 1 mm on a plane, seen at 4 px per mm in x and 3 in y.
   constexpr int size = 43;
   const auto impulse = [](const Camera& camera, float depth, double mm_per_unit) {

@@ -12,13 +12,13 @@ namespace dermis::oracle {
 
 inline const Camera one_px_per_mm = Camera::orthographic(1, 1);
 
-/// With flat weights that equal the others on a plane parallel to the screen of the rung's footprint.
+/// With flat weights that equal the others on a plane parallel to the screen of the level's px_per_mm.
 inline Reference run(const MadeFrame& made, Material material, const Options& options = {}) {
   lay_flat(material.taps);
   return separable(made.frame(), std::span(&material, 1), options);
 }
 
-/// The same frame with a mask that changes no width, but keeps cells from being flat.
+/// The same frame with a mask that changes no width, but keeps blocks from being flat.
 inline MadeFrame never_flat(MadeFrame made) {
   made.mask.assign(made.pixels(), 1);
   return made;

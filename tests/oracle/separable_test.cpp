@@ -5,12 +5,12 @@
 #include <utility>
 #include <vector>
 
-#include "support/catch.hpp"
 #include "dermis/oracle/reference.hpp"
 #include "oracle/made_frame.hpp"
 #include "oracle/made_taps.hpp"
-#include "support/random.hpp"
 #include "oracle/separable_run.hpp"
+#include "support/catch.hpp"
+#include "support/random.hpp"
 
 namespace dermis::oracle {
 
@@ -82,10 +82,10 @@ TEST_CASE("the mask makes the profile narrower", "[separable]") {
   CHECK(reference.scattered(1, 0) == Approx((0.5 * 10 + 2 * 0.0625 * 101) / (0.5 + 4 * 0.0625)));
 }
 
-TEST_CASE("the core is that of the pixel's own footprint and width", "[separable]") {
+TEST_CASE("the centre is that of the pixel's own px_per_mm and width", "[separable]") {
   Material material = tiny_material();
   material.taps.radius_mm = 10;
-  material.taps.terms[0].core =
+  material.taps.terms[0].centre =
       made_table([](double root) { return std::pow(root, 4); }, 4);  // linear in the fourth power: exact
   MadeFrame made = three_pixels();
   made.camera = Camera::orthographic(2, 2);  // r^2 = 1/4 to the next pixel, below the first octave: falloff 1/4
@@ -96,21 +96,21 @@ TEST_CASE("the core is that of the pixel's own footprint and width", "[separable
   CHECK(run(made, material).scattered(1, 0) == Approx((1 * 10 + tap * 101) / (1 + 2 * tap)));
 }
 
-TEST_CASE("the rung is chosen by the widest kernel of the cell", "[separable]") {
+TEST_CASE("the level is chosen by the widest kernel of the block", "[separable]") {
   Material material = tiny_material();
   material.taps.radius_mm = 0.5;
-  material.taps.rungs = {made_rung(1, {}, 1), made_rung(1, {1}, 1)};
+  material.taps.levels = {made_level(1, {}, 1), made_level(1, {1}, 1)};
   MadeFrame made(33, 33, one_px_per_mm, 0);
   for (std::size_t i = 0; i < made.pixels(); ++i) {
     const auto x = static_cast<float>(i % 33);
     const auto y = static_cast<float>(i / 33);
     MadeFrame::set_rgb(made.light, i, x * x, y * y, 0);
   }
-  CHECK(run(made, material).scattered(5, 0) == 25);  // radius 0.5 px: rung 0, which has no taps
+  CHECK(run(made, material).scattered(5, 0) == 25);  // radius 0.5 px: level 0, which has no taps
   made.camera = Camera::orthographic(1.0584, 1);
   CHECK(run(made, material).scattered(5, 0) == 25);
   made.camera = Camera::orthographic(1.0587, 1);
-  CHECK(run(made, material).scattered(5, 0) > 25.4);  // from 17/16 of half a pixel on, less 1/256: rung 1
+  CHECK(run(made, material).scattered(5, 0) > 25.4);  // from 17/16 of half a pixel on, less 1/256: level 1
 
   material.taps.radius_mm = 0.54;
   made.camera = one_px_per_mm;
@@ -119,17 +119,17 @@ TEST_CASE("the rung is chosen by the widest kernel of the cell", "[separable]") 
   const Reference one_wide = run(made, material);
   for (int y = 0; y < 33; ++y) {
     for (int x = 0; x < 33; ++x) {
-      const bool in_cell = x < 16 && y >= 16 && y < 32;
-      if ((one_wide.scattered(x, y, 0) != x * x) != in_cell) FAIL_CHECK("across at " << x << ", " << y);
-      if ((one_wide.scattered(x, y, 1) != y * y) != in_cell) FAIL_CHECK("down at " << x << ", " << y);
+      const bool in_block = x < 16 && y >= 16 && y < 32;
+      if ((one_wide.scattered(x, y, 0) != x * x) != in_block) FAIL_CHECK("across at " << x << ", " << y);
+      if ((one_wide.scattered(x, y, 1) != y * y) != in_block) FAIL_CHECK("down at " << x << ", " << y);
     }
   }
 }
 
-TEST_CASE("a narrow pixel has no say in the rung of its cell", "[separable]") {
+TEST_CASE("a narrow pixel has no say in the level of its block", "[separable]") {
   // Material 2 is narrow at a full mask; material 1 is just wide enough at half of it.
   std::vector materials{tiny_material(1), tiny_material(2)};
-  materials[0].taps.rungs = {made_rung(1, {}, 1), made_rung(1, {1}, 1)};
+  materials[0].taps.levels = {made_level(1, {}, 1), made_level(1, {1}, 1)};
   materials[0].taps.terms[0].falloff = linear_table(0, {0.25, 0.125, 0.1});
   materials[1].taps.radius_mm = 0.25;
   MadeFrame made = three_pixels();
@@ -137,11 +137,11 @@ TEST_CASE("a narrow pixel has no say in the rung of its cell", "[separable]") {
   made.material = {1, 1, 2};
   const Reference narrow = separable(made.frame(), materials, {});
   CHECK(narrow.touched.values == std::vector<double>{1, 1, 0});
-  CHECK(narrow.scattered(0, 0) == 1);  // rung 0 has no taps
+  CHECK(narrow.scattered(0, 0) == 1);  // level 0 has no taps
   materials[1].taps.radius_mm = 0.5;
   const Reference wide = separable(made.frame(), materials, {});
   CHECK(wide.touched.values == std::vector<double>{1, 1, 1});
-  CHECK(wide.scattered(0, 0) > 1.5);  // rung 1
+  CHECK(wide.scattered(0, 0) > 1.5);  // level 1
 }
 
 TEST_CASE("a kernel may be narrow along one axis only", "[separable]") {
@@ -179,7 +179,7 @@ TEST_CASE("rotated taps keep their distance and mirror each other", "[separable]
   Material material = tiny_material();
   material.taps.radius_mm = 8;
   material.taps.terms[0].falloff = linear_table(0, {0.25});
-  material.taps.rungs = {made_rung(1, {8}, 1)};
+  material.taps.levels = {made_level(1, {8}, 1)};
   MadeFrame made(21, 21, one_px_per_mm, 0);
   for (int y = -10; y <= 10; ++y) {
     for (int x = -10; x <= 10; ++x) {

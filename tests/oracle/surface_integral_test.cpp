@@ -5,12 +5,12 @@
 #include <span>
 #include <vector>
 
-#include "support/catch.hpp"
 #include "dermis/oracle/compare.hpp"
 #include "dermis/oracle/reference.hpp"
 #include "dermis/oracle/scenes.hpp"
 #include "oracle/made_frame.hpp"
 #include "oracle/made_taps.hpp"
+#include "support/catch.hpp"
 #include "support/random.hpp"
 
 namespace dermis::oracle {

@@ -3,12 +3,12 @@
 #include <cstddef>
 #include <vector>
 
-#include "support/catch.hpp"
 #include "dermis/oracle/compare.hpp"
 #include "dermis/oracle/reference.hpp"
 #include "oracle/made_frame.hpp"
 #include "oracle/made_taps.hpp"
 #include "oracle/separable_run.hpp"
+#include "support/catch.hpp"
 
 namespace dermis::oracle {
 
@@ -70,9 +70,9 @@ TEST_CASE("two normalised terms by hand", "[terms]") {
   }
 }
 
-TEST_CASE("a term may have less light in its core", "[terms]") {
+TEST_CASE("a term may have less light in its centre", "[terms]") {
   Material material = tiny_material();
-  material.taps.rungs[0].core_gain[0] = grey(0.5);
+  material.taps.levels[0].centre_gain[0] = grey(0.5);
   for (const MadeFrame& made : both_ways(three_pixels())) {
     CHECK(run(made, material).scattered(1, 0) == Approx((0.25 * 10 + 0.25 * 101) / 0.75));
   }
@@ -98,16 +98,16 @@ TEST_CASE("a difference term by hand: taps that are missing count as the pixel",
   }
 }
 
-TEST_CASE("the core of a difference term counts nothing", "[terms]") {
+TEST_CASE("the centre of a difference term counts nothing", "[terms]") {
   Material material = tiny_material();
   add_term(material.taps, tiny_difference(0.125, 0), one_mm);
   const MadeFrame made = never_flat(nine_pixels());
   const Reference before = run(made, material);
-  material.taps.terms[1].core = material.taps.terms[0].core;
+  material.taps.terms[1].centre = material.taps.terms[0].centre;
   const Reference after = run(made, material);
   CHECK(after.scattered.values == before.scattered.values);
   CHECK(after.scattered_bound.values == before.scattered_bound.values);
-  material.taps.terms[0].core = linear_table(0, {0.4});
+  material.taps.terms[0].centre = linear_table(0, {0.4});
   CHECK(run(made, material).scattered.values != before.scattered.values);
 }
 
@@ -121,7 +121,7 @@ TEST_CASE("a weight may be a share of the first term's", "[terms]") {
     CHECK(both.scattered(static_cast<int>(x), 1) ==
           Approx(mean(u, x, 0.5, 0.25) * mean(v, 1, 0.5, 0.25) + second).epsilon(1e-14));
   }
-  // All of it and nothing else: the first term again, if the core is the same.
+  // All of it and nothing else: the first term again, if the centre is the same.
   Material again = tiny_material();
   add_term(again.taps, tiny_term(0, 0.5), {{}, {1, 1, 1}});
   share_out(again.taps, 0.25);

@@ -5,13 +5,13 @@
 #include <cstdint>
 #include <vector>
 
-#include "support/catch.hpp"
 #include "dermis/oracle/compare.hpp"
 #include "dermis/oracle/reference.hpp"
 #include "oracle/made_frame.hpp"
 #include "oracle/made_taps.hpp"
-#include "support/random.hpp"
 #include "oracle/separable_run.hpp"
+#include "support/catch.hpp"
+#include "support/random.hpp"
 
 namespace dermis::oracle {
 
@@ -108,11 +108,11 @@ TEST_CASE("terms are passes of their own", "[terms]") {
     }
     // The weights of the first term limit those of a difference.
     material.taps = first;
-    add_term(material.taps, terms[2], first.rungs[0].weights[0]);
+    add_term(material.taps, terms[2], first.levels[0].weights[0]);
     material.taps.terms[0].scale = grey(0);
     alone.push_back(run(made, material, options).scattered);
     material.taps = first;
-    for (const std::size_t t : {1U, 2U}) add_term(material.taps, terms[t], first.rungs[0].weights[0]);
+    for (const std::size_t t : {1U, 2U}) add_term(material.taps, terms[t], first.levels[0].weights[0]);
     for (std::size_t t = 0; t < 3; ++t) material.taps.terms[t].scale = grey(scales[t]);
     const Reference all = run(made, material, options);
     double worst = 0;
@@ -136,7 +136,7 @@ TEST_CASE("materials of one and of several terms side by side", "[terms]") {
   Random random(14);
   MadeFrame made = rough_frame(random, 40, 12);
   for (std::size_t i = 0; i < made.pixels(); ++i) made.material.push_back(static_cast<float>(random.integer(0, 3)));
-  // Either left alone or wide enough for taps by itself, whatever it shares its cell with; and one rung for all.
+  // Either left alone or wide enough for taps by itself, whatever it shares its block with; and one level for all.
   for (float& mask : made.mask) mask = mask < 0.2F ? 0.01F : mask;
   std::vector materials{gaussian_material(0.5, 4, 1), gaussian_material(0.3, 4, 2), gaussian_material(0.4, 4, 3)};
   add_term(materials[1].taps, gaussian_difference(0.5, 0, 0.5), {{0.25F, 0.25F, 0.25F}, {0.5F, 0.5F, 0.5F}});
@@ -164,7 +164,7 @@ TEST_CASE("all terms of a pixel are rotated by the same angle", "[terms]") {
   Material material = tiny_material();
   material.taps.radius_mm = 8;
   material.taps.terms[0].falloff = linear_table(0, {0.25});
-  material.taps.rungs = {made_rung(1, {8}, 1)};
+  material.taps.levels = {made_level(1, {8}, 1)};
   MadeFrame made(21, 21, one_px_per_mm, 0);
   for (int y = -10; y <= 10; ++y) {
     for (int x = -10; x <= 10; ++x) {

@@ -30,14 +30,14 @@ TEST_CASE("a camera projects to where it unprojects from", "[view]") {
   CHECK(flat[2] == 60);
 }
 
-TEST_CASE("the footprint is the pixels between points a millimetre apart", "[view]") {
+TEST_CASE("the px_per_mm is the pixels between points a millimetre apart", "[view]") {
   Random random(1);
   for (int round = 0; round < 20; ++round) {
     const View view = random_view(random);
     const double z = random.uniform(1, 30);
     const Vec3 here = view.unproject(3, 5, z);
-    CHECK(view.footprint(horizontal, exact(z)).value == Approx(1 / (view.unproject(4, 5, z)[0] - here[0])));
-    CHECK(view.footprint(vertical, exact(z)).value == Approx(1 / (view.unproject(3, 6, z)[1] - here[1])));
+    CHECK(view.px_per_mm(horizontal, exact(z)).value == Approx(1 / (view.unproject(4, 5, z)[0] - here[0])));
+    CHECK(view.px_per_mm(vertical, exact(z)).value == Approx(1 / (view.unproject(3, 6, z)[1] - here[1])));
   }
 }
 

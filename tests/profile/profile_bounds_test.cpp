@@ -2,9 +2,9 @@
 #include <cmath>
 #include <limits>
 
-#include "support/catch.hpp"
 #include "dermis/error.hpp"
 #include "dermis/profile.hpp"
+#include "support/catch.hpp"
 
 using dermis::Profile;
 using dermis::Rgb;

@@ -2,9 +2,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "support/catch.hpp"
-#include "support/adaptive_quadrature.hpp"
 #include "dermis/profile.hpp"
+#include "support/adaptive_quadrature.hpp"
+#include "support/catch.hpp"
 #include "support/random.hpp"
 
 using dermis::Profile;

@@ -3,11 +3,11 @@
 #include <cmath>
 #include <string>
 
-#include "support/catch.hpp"
-#include "support/adaptive_quadrature.hpp"
-#include "support/some_profiles.hpp"
 #include "dermis/error.hpp"
+#include "support/adaptive_quadrature.hpp"
+#include "support/catch.hpp"
 #include "support/random.hpp"
+#include "support/some_profiles.hpp"
 
 using dermis::Profile;
 

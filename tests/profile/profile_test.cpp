@@ -4,10 +4,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "support/catch.hpp"
 #include "support/adaptive_quadrature.hpp"
-#include "support/some_profiles.hpp"
+#include "support/catch.hpp"
 #include "support/random.hpp"
+#include "support/some_profiles.hpp"
 
 using dermis::Profile;
 

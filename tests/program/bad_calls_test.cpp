@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "support/catch.hpp"
 #include "program/made_picture.hpp"
-#include "support/random.hpp"
 #include "program/run_program.hpp"
 #include "program/temporary_folder.hpp"
+#include "support/catch.hpp"
+#include "support/random.hpp"
 
 namespace fs = std::filesystem;
 using Words = std::vector<std::string>;

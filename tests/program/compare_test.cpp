@@ -4,12 +4,12 @@
 #include <string>
 #include <vector>
 
-#include "support/catch.hpp"
 #include "dermis/exr.hpp"
 #include "program/made_picture.hpp"
-#include "support/random.hpp"
 #include "program/run_program.hpp"
 #include "program/temporary_folder.hpp"
+#include "support/catch.hpp"
+#include "support/random.hpp"
 
 using dermis::exr::Picture;
 

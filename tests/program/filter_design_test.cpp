@@ -11,7 +11,6 @@
 #include <string>
 #include <vector>
 
-#include "support/catch.hpp"
 #include "dermis/exr.hpp"
 #include "dermis/plan.hpp"
 #include "dermis/profile.hpp"
@@ -19,6 +18,7 @@
 #include "program/made_picture.hpp"
 #include "program/run_program.hpp"
 #include "program/temporary_folder.hpp"
+#include "support/catch.hpp"
 
 using dermis::TapsDesign;
 using dermis::exr::Picture;

@@ -8,13 +8,13 @@
 #include <string>
 #include <vector>
 
-#include "support/catch.hpp"
 #include "dermis/exr.hpp"
 #include "dermis/profile.hpp"
 #include "dermis/version.hpp"
 #include "program/made_picture.hpp"
 #include "program/run_program.hpp"
 #include "program/temporary_folder.hpp"
+#include "support/catch.hpp"
 
 using dermis::exr::Picture;
 using nlohmann::json;
@@ -83,10 +83,10 @@ TEST_CASE("info tells what the sample holds") {
     CHECK(material["pixels"] == counts.at(id));
     CHECK(material.contains("radius_px") == (id == 1 || id == 2));
     if (id != 1) continue;
-    const double footprint =
+    const double px_per_mm =
         info["camera"]["scale_x"].get<double>() / (10 * material["median_depth_units"].get<double>());
     CHECK(material["radius_px"][0].get<double>() ==
-          Approx(material["radius_mm"].get<double>() * footprint).epsilon(1e-9));
+          Approx(material["radius_mm"].get<double>() * px_per_mm).epsilon(1e-9));
     CHECK(material["radius_px"][0] > 1.0);
   }
   CHECK(info["device_memory_bytes"]["working"] > 960 * 540 * 4);

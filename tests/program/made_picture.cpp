@@ -6,9 +6,9 @@
 #include <span>
 #include <utility>
 
-#include "support/catch.hpp"
 #include "dermis/oracle/compare.hpp"
 #include "program/run_program.hpp"
+#include "support/catch.hpp"
 
 using dermis::exr::Picture;
 

@@ -7,8 +7,8 @@
 #include <fstream>
 #include <iterator>
 
-#include "support/catch.hpp"
 #include "program/temporary_folder.hpp"
+#include "support/catch.hpp"
 
 namespace {
 

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "support/catch.hpp"
 #include "program/made_picture.hpp"
 #include "program/run_program.hpp"
 #include "program/temporary_folder.hpp"
+#include "support/catch.hpp"
 
 namespace fs = std::filesystem;
 using Words = std::vector<std::string>;

@@ -12,10 +12,10 @@
 #include <utility>
 #include <vector>
 
-#include "support/catch.hpp"
-#include "support/random.hpp"
 #include "program/run_program.hpp"
 #include "program/temporary_folder.hpp"
+#include "support/catch.hpp"
+#include "support/random.hpp"
 
 namespace fs = std::filesystem;
 using nlohmann::json;
@@ -231,15 +231,15 @@ TEST_CASE("rows of taps restore the same floats as JSON") {
     for (std::size_t i = 0; i < 7; ++i) {
       REQUIRE(std::getline(file, line));
       INFO(line);
-      std::vector<std::string> cells;
+      std::vector<std::string> blocks;
       std::istringstream row(line);
-      for (std::string cell; std::getline(row, cell, ',');) cells.push_back(cell);
-      REQUIRE(cells.size() == 8);
-      CHECK(std::stod(cells[0]) == set["offsets_px"][i]);
-      CHECK(cells[1] == std::to_string(t + 1));
+      for (std::string block; std::getline(row, block, ',');) blocks.push_back(block);
+      REQUIRE(blocks.size() == 8);
+      CHECK(std::stod(blocks[0]) == set["offsets_px"][i]);
+      CHECK(blocks[1] == std::to_string(t + 1));
       for (std::size_t c = 0; c < 3; ++c) {
-        CHECK(std::stof(cells[2 + c]) == set["terms"][t]["weights"][i][c].get<float>());
-        CHECK(std::stod(cells[5 + c]) == set["terms"][t]["scale"][c].get<double>());
+        CHECK(std::stof(blocks[2 + c]) == set["terms"][t]["weights"][i][c].get<float>());
+        CHECK(std::stod(blocks[5 + c]) == set["terms"][t]["scale"][c].get<double>());
       }
     }
   }

@@ -4,11 +4,11 @@
 #include <string>
 #include <vector>
 
-#include "support/catch.hpp"
 #include "dermis/exr.hpp"
 #include "program/made_picture.hpp"
 #include "program/run_program.hpp"
 #include "program/temporary_folder.hpp"
+#include "support/catch.hpp"
 
 using dermis::exr::Picture;
 using Words = std::vector<std::string>;

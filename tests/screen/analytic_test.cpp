@@ -3,10 +3,10 @@
 #include <cmath>
 #include <numeric>
 
-#include "support/catch.hpp"
-#include "support/random_frame.hpp"
 #include "dermis/plan.hpp"
 #include "dermis/taps.hpp"
+#include "support/catch.hpp"
+#include "support/random_frame.hpp"
 
 using dermis::Camera;
 using dermis::Device;
@@ -120,10 +120,10 @@ TEST_CASE("a straight edge has the analytic profile", "[analytic]") {
     const double radius_mm = dermis::make_taps(preset.profile, options.taps).radius_mm;
     for (const bool dense : {true, false}) {
       const double radius_px = dense ? random.uniform(3, 12) : random.uniform(30, 60);
-      const double footprint = radius_px / radius_mm;
+      const double px_per_mm = radius_px / radius_mm;
       FlatPicture picture{.width = 301,
                           .height = 5,
-                          .camera = Camera::perspective(150 * footprint, 150 * footprint, 0, 0),
+                          .camera = Camera::perspective(150 * px_per_mm, 150 * px_per_mm, 0, 0),
                           .depth = 150};
       for (int y = 0; y < 5; ++y) {
         for (int x = 150; x < 301; ++x) {
@@ -134,12 +134,12 @@ TEST_CASE("a straight edge has the analytic profile", "[analytic]") {
       double worst = 0;
       for (int x = 0; x < 301; ++x) {
         for (int c = 0; c < 3; ++c) {
-          const double expected = preset.profile.edge(c, (x + 0.5 - 150) / footprint);
+          const double expected = preset.profile.edge(c, (x + 0.5 - 150) / px_per_mm);
           worst = std::max(worst, std::abs(picture.scattered_at(x, 2, c) - expected));
         }
       }
       CAPTURE(test_seed(), preset.name, radius_px, worst);
-      // Flat weights know the footprint to a 16th of a step between rungs.
+      // Flat weights know the px_per_mm to a 16th of a step between levels.
       CHECK(worst <= (dense ? 1e-2 : 6e-2));
     }
   }

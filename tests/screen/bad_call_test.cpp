@@ -1,8 +1,8 @@
 // Each bad call of the library: kind and message.
 #include <cmath>
 
-#include "support/catch.hpp"
 #include "dermis/dermis.hpp"
+#include "support/catch.hpp"
 #include "support/failure.hpp"
 
 using dermis::Camera;

@@ -6,10 +6,10 @@
 #include <numbers>
 #include <vector>
 
-#include "support/catch.hpp"
-#include "support/random_frame.hpp"
 #include "dermis/oracle/compare.hpp"
 #include "dermis/plan.hpp"
+#include "support/catch.hpp"
+#include "support/random_frame.hpp"
 
 using dermis::Camera;
 using dermis::Device;
@@ -273,7 +273,7 @@ TEST_CASE("a scene in other units is the same scene", "[defects]") {
     squares += std::pow(static_cast<double>(in_others[i] - in_mm[i]), 2);
     all += std::pow(static_cast<double>(in_mm[i]), 2);
   }
-  // Depths are rounded to 4e-6 mm, which is 2e-5 of the size of a pixel, and a cell may take another rung for it.
+  // Depths are rounded to 4e-6 mm, which is 2e-5 of the size of a pixel, and a block may take another level for it.
   CHECK(std::sqrt(squares / all) < 5e-4);
 }
 

@@ -3,11 +3,11 @@
 #include <cmath>
 #include <string>
 
+#include "dermis/plan.hpp"
 #include "support/catch.hpp"
 #include "support/oracle_material.hpp"
 #include "support/random_frame.hpp"
 #include "support/tally.hpp"
-#include "dermis/plan.hpp"
 
 using dermis::Device;
 using dermis::Frame;

@@ -7,12 +7,12 @@
 #include <limits>
 #include <vector>
 
-#include "support/catch.hpp"
-#include "support/natural_pictures.hpp"
-#include "support/random_frame.hpp"
 #include "dermis/oracle/compare.hpp"
 #include "dermis/oracle/scenes.hpp"
 #include "dermis/plan.hpp"
+#include "support/catch.hpp"
+#include "support/natural_pictures.hpp"
+#include "support/random_frame.hpp"
 
 using dermis::Device;
 using dermis::DiscOptions;

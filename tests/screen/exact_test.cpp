@@ -1,10 +1,10 @@
 // The exact method against the oracle's surface integral.
-#include "support/catch.hpp"
-#include "opencl/device.hpp"
-#include "support/oracle_material.hpp"
 #include "dermis/oracle/compare.hpp"
 #include "dermis/oracle/scenes.hpp"
 #include "dermis/plan.hpp"
+#include "opencl/device.hpp"
+#include "support/catch.hpp"
+#include "support/oracle_material.hpp"
 
 using dermis::Camera;
 using dermis::Device;

@@ -5,12 +5,12 @@
 #include <utility>
 #include <vector>
 
-#include "support/catch.hpp"
-#include "support/oracle_material.hpp"
-#include "support/random_frame.hpp"
 #include "dermis/oracle/reference.hpp"
 #include "dermis/oracle/scenes.hpp"
 #include "dermis/plan.hpp"
+#include "support/catch.hpp"
+#include "support/oracle_material.hpp"
+#include "support/random_frame.hpp"
 
 namespace oracle = dermis::oracle;
 using dermis::Device;

@@ -1,10 +1,10 @@
 // What must not change a single bit of the result.
 #include <cstring>
 
-#include "support/catch.hpp"
-#include "opencl/device.hpp"
-#include "support/random_frame.hpp"
 #include "dermis/plan.hpp"
+#include "opencl/device.hpp"
+#include "support/catch.hpp"
+#include "support/random_frame.hpp"
 
 using dermis::Device;
 using dermis::Format;

@@ -1,10 +1,10 @@
 // Every kernel of the separable method against the oracle over the same taps, on random frames, within the bound that
 // the oracle derives from float rounding.
+#include "dermis/plan.hpp"
 #include "support/catch.hpp"
 #include "support/oracle_material.hpp"
 #include "support/random_frame.hpp"
 #include "support/tally.hpp"
-#include "dermis/plan.hpp"
 
 using dermis::Device;
 using dermis::FrameDescription;

@@ -3,12 +3,12 @@
 #include <cmath>
 #include <vector>
 
-#include "support/catch.hpp"
-#include "support/oracle_material.hpp"
-#include "support/random_frame.hpp"
 #include "dermis/oracle/compare.hpp"
 #include "dermis/oracle/scenes.hpp"
 #include "dermis/plan.hpp"
+#include "support/catch.hpp"
+#include "support/oracle_material.hpp"
+#include "support/random_frame.hpp"
 
 using dermis::Camera;
 using dermis::Device;

@@ -3,9 +3,9 @@
 #include <cstddef>
 #include <vector>
 
-#include "support/catch.hpp"
 #include "dermis/error.hpp"
 #include "dermis/plan.hpp"
+#include "support/catch.hpp"
 #include "support/random.hpp"
 
 using dermis::Camera;

@@ -2,9 +2,9 @@
 #include <cmath>
 #include <cstring>
 
+#include "dermis/plan.hpp"
 #include "support/catch.hpp"
 #include "support/random_frame.hpp"
-#include "dermis/plan.hpp"
 
 using dermis::Camera;
 using dermis::Device;
@@ -153,7 +153,7 @@ TEST_CASE("uniform light is copied, and what follows it in a run does not depend
   Random random(801);
   for (int run = 0; run < 6; ++run) {
     // Near and far take different taps, and so do the passes, as pixels are not square. What a run under varied light
-    // leaves in memory must not reach the next: there one pixel is lit otherwise, but not the first row of its cells.
+    // leaves in memory must not reach the next: there one pixel is lit otherwise, but not the first row of its blocks.
     const bool is_varied = run % 2 == 0;
     std::fill(depth.begin(), depth.end(), is_varied ? 200.0F : 400.0F);
     for (float& value : light) value = is_varied ? static_cast<float>(random.uniform(0, 1)) : 1;
@@ -200,7 +200,7 @@ TEST_CASE("a channel that spreads less than half a pixel keeps its bits, and is 
   const dermis::TapsDesign design{.rank = 2, .count = 11};
   const dermis::Profile& skin = dermis::preset("skin").profile;
   const dermis::Taps taps = dermis::make_taps(skin, design);
-  constexpr int width = 80;  // whole cells
+  constexpr int width = 80;  // whole blocks
   constexpr int height = 41;
   // Blue spreads 0.4 px, the others further.
   const double px_per_mm = 0.4 / (taps.radius_mm * static_cast<double>(taps.relative_width[2]));

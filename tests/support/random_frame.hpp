@@ -4,8 +4,8 @@
 #include <optional>
 #include <vector>
 
-#include "support/guarded_image.hpp"
 #include "dermis/plan.hpp"
+#include "support/guarded_image.hpp"
 
 /// What to leave out or to hold still.
 struct RandomFrameChoice {

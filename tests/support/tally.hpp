@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "dermis/oracle/reference.hpp"
 #include "support/catch.hpp"
 #include "support/random_frame.hpp"
-#include "dermis/oracle/reference.hpp"
 
 struct Tally {
   double worst = 0;          ///< error / bound

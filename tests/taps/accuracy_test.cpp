@@ -6,9 +6,9 @@
 #include <map>
 #include <string>
 
+#include "dermis/taps.hpp"
 #include "support/catch.hpp"
 #include "support/natural_pictures.hpp"
-#include "dermis/taps.hpp"
 #include "support/random.hpp"
 
 using dermis::Fetch;

@@ -6,16 +6,16 @@
 #include <limits>
 #include <vector>
 
-#include "support/catch.hpp"
-#include "support/natural_pictures.hpp"
 #include "dermis/plan.hpp"
 #include "dermis/taps.hpp"
+#include "support/catch.hpp"
+#include "support/natural_pictures.hpp"
 #include "support/random.hpp"
 
 using dermis::make_tap_set;
 using dermis::make_taps;
 using dermis::Profile;
-using dermis::Rung;
+using dermis::TapLevel;
 using dermis::Taps;
 using dermis::TapsDesign;
 using dermis::TapSet;
@@ -23,8 +23,8 @@ using dermis::with_rank;
 
 namespace {
 
-constexpr int rungs_per_octave = 1 << Taps::log2_rungs_per_octave;
-constexpr int rungs_up_to_512_px = 10 * rungs_per_octave;  // wider kernels have the taps of others, spread out
+constexpr int levels_per_octave = 1 << Taps::log2_levels_per_octave;
+constexpr int levels_up_to_512_px = 10 * levels_per_octave;  // wider kernels have the taps of others, spread out
 
 TapsDesign within(double tolerance, int rank = 0) { return {.rank = rank, .count = 33, .tolerance = tolerance}; }
 
@@ -38,18 +38,18 @@ Profile random_profile(Random& random) {
       {{mm * mm, {1, random.uniform(0, 1), random.uniform(0, 1)}}, {narrow * mm * mm, {random.uniform(0, 1), 1, 1}}});
 }
 
-int count_of(const Rung& rung) { return 2 * static_cast<int>(rung.offsets_px.size()) + 1; }
+int count_of(const TapLevel& level) { return 2 * static_cast<int>(level.offsets_px.size()) + 1; }
 
-int rung_for(double radius_px) { return Taps::rung_index(static_cast<float>(radius_px)); }
+int level_for(double radius_px) { return Taps::level_index(static_cast<float>(radius_px)); }
 
-/// The taps of a rung as it has them on a flat cell for the size of pixel that they were made for.
-TapSet set_of(const Taps& taps, const Rung& rung) {
-  const std::size_t pairs = rung.offsets_px.size();
-  const auto& weights = rung.flat_weights[rung.flat_weights.size() / 2];
+/// The taps of a level as it has them on a flat block for the size of pixel that they were made for.
+TapSet set_of(const Taps& taps, const TapLevel& level) {
+  const std::size_t pairs = level.offsets_px.size();
+  const auto& weights = level.flat_weights[level.flat_weights.size() / 2];
   TapSet set;
-  set.pixel_mm = 1 / static_cast<double>(rung.footprint);
-  for (std::size_t i = pairs; i > 0; --i) set.offsets_px.push_back(-rung.offsets_px[i - 1]);
-  for (std::size_t i = 0; i <= pairs; ++i) set.offsets_px.push_back(i == 0 ? 0 : rung.offsets_px[i - 1]);
+  set.pixel_mm = 1 / static_cast<double>(level.px_per_mm);
+  for (std::size_t i = pairs; i > 0; --i) set.offsets_px.push_back(-level.offsets_px[i - 1]);
+  for (std::size_t i = 0; i <= pairs; ++i) set.offsets_px.push_back(i == 0 ? 0 : level.offsets_px[i - 1]);
   for (std::size_t t = 0; t < taps.terms.size(); ++t) {
     dermis::TapTerm term;
     for (int c = 0; c < 3; ++c) term.scale[c] = static_cast<double>(taps.terms[t].scale[c]);
@@ -127,22 +127,22 @@ TEST_CASE("taps are fewer for narrow kernels and for loose tolerances", "[budget
       CAPTURE(test_seed(), round, rank, tolerance);
       const Taps taps = make_taps(profile, within(tolerance, rank));
       REQUIRE(static_cast<int>(taps.terms.size()) == rank);
-      REQUIRE(taps.rungs.size() == static_cast<std::size_t>(Taps::octaves * rungs_per_octave));
+      REQUIRE(taps.levels.size() == static_cast<std::size_t>(Taps::octaves * levels_per_octave));
       std::size_t pairs = 0;
-      for (std::size_t i = 0; i < rungs_up_to_512_px; ++i) {
+      for (std::size_t i = 0; i < levels_up_to_512_px; ++i) {
         CAPTURE(i);
-        REQUIRE(count_of(taps.rungs[i]) <= 33);
-        REQUIRE((i == 0 || taps.rungs[i].offsets_px.size() >= taps.rungs[i - 1].offsets_px.size()));
-        pairs += taps.rungs[i].offsets_px.size();
+        REQUIRE(count_of(taps.levels[i]) <= 33);
+        REQUIRE((i == 0 || taps.levels[i].offsets_px.size() >= taps.levels[i - 1].offsets_px.size()));
+        pairs += taps.levels[i].offsets_px.size();
       }
-      CHECK(count_of(taps.rungs[rung_for(8)]) < count_of(taps.rungs[rungs_up_to_512_px - 1]));
+      CHECK(count_of(taps.levels[level_for(8)]) < count_of(taps.levels[levels_up_to_512_px - 1]));
       CHECK(pairs < before);
       before = pairs;
     }
   }
 }
 
-TEST_CASE("a rung has no more taps than the tolerance takes, and meets it", "[budget]") {
+TEST_CASE("a level has no more taps than the tolerance takes, and meets it", "[budget]") {
   Random random(901);
   constexpr int side_px = 512;
   const NaturalPictures pictures(side_px, 3, test_seed());
@@ -152,22 +152,22 @@ TEST_CASE("a rung has no more taps than the tolerance takes, and meets it", "[bu
     const double tolerance = std::exp(random.uniform(std::log(0.006), std::log(0.05)));
     const TapsDesign design = with_rank(profile, within(tolerance));
     const Taps taps = make_taps(profile, design);
-    const Rung& rung = taps.rungs[rung_for(radius_px)];
-    const TapSet set = set_of(taps, rung);
+    const TapLevel& level = taps.levels[level_for(radius_px)];
+    const TapSet set = set_of(taps, level);
     const double error = ExactKernel(profile, set.pixel_mm, side_px).rel_l2(set, pictures);
-    CAPTURE(test_seed(), round, radius_px, tolerance, design.rank, count_of(rung), error);
+    CAPTURE(test_seed(), round, radius_px, tolerance, design.rank, count_of(level), error);
     // What is predicted is within a factor of 1.5 of the error on random pictures (see accuracy_test.cpp), and the
-    // rungs of a quarter of an octave have the taps that the widest of them needs.
+    // levels of a quarter of an octave have the taps that the widest of them needs.
     CHECK(error <= 1.5 * tolerance);
-    // The rungs of this count began where fewer were not enough. 3/2 for the search, which may find better taps for a
+    // The levels of this count began where fewer were not enough. 3/2 for the search, which may find better taps for a
     // single size than for one size after the other, most of all where kernels are but a few pixels wide.
-    auto first = static_cast<std::size_t>(rung_for(radius_px));
-    while (first > 0 && count_of(taps.rungs[first - 1]) == count_of(rung)) --first;
-    if (first < rungs_per_octave * 2 || count_of(rung) <= 5) continue;  // on every pixel, or the fewest there are
+    auto first = static_cast<std::size_t>(level_for(radius_px));
+    while (first > 0 && count_of(taps.levels[first - 1]) == count_of(level)) --first;
+    if (first < levels_per_octave * 2 || count_of(level) <= 5) continue;  // on every pixel, or the fewest there are
     TapsDesign fewer = design;
     fewer.tolerance = 0;
-    fewer.count = count_of(taps.rungs[first - 1]);
-    const double pixel_mm = 1 / static_cast<double>(taps.rungs[first + 3].footprint);
+    fewer.count = count_of(taps.levels[first - 1]);
+    const double pixel_mm = 1 / static_cast<double>(taps.levels[first + 3].px_per_mm);
     CHECK(make_tap_set(profile, fewer, pixel_mm).predicted_rel_l2 > tolerance / 1.5);
   }
 }
@@ -192,7 +192,7 @@ TEST_CASE("the filter is as far off on a plane as a tolerance predicts, and with
       const Taps taps = make_taps(profile, design);
       TapsDesign there = design;
       there.tolerance = 0;
-      there.count = count_of(taps.rungs[rung_for(taps.radius_mm * px_per_mm)]);
+      there.count = count_of(taps.levels[level_for(taps.radius_mm * px_per_mm)]);
       const double predicted = make_tap_set(profile, there, 1 / px_per_mm).predicted_rel_l2;
       const std::vector<float> scattered = card.filtered(device, profile, design);
       double errors = 0;
@@ -214,7 +214,7 @@ TEST_CASE("the filter is as far off on a plane as a tolerance predicts, and with
       // Random pictures as a whole are within a factor of 1.5 (accuracy_test.cpp). This is a part of one: it holds
       // about (160 px / kernel width)^2 >= 40 patches whose errors do not depend on each other, so that their sum of
       // squares has a standard deviation of sqrt(2 / 40) = 0.22 of itself, and the root of it, three times out, is off
-      // by a factor of sqrt(1 + 3 * 0.22) = 1.3. Together 2. A thousandth is what lies between the sizes of two rungs.
+      // by a factor of sqrt(1 + 3 * 0.22) = 1.3. Together 2. A thousandth is what lies between the sizes of two levels.
       CHECK(error <= 2 * predicted + 1e-3);
       CHECK(error >= predicted / 2 - 1e-3);
       CHECK(error <= 2 * tolerance);

@@ -3,9 +3,9 @@
 #include <cmath>
 #include <numeric>
 
+#include "dermis/plan.hpp"
 #include "support/catch.hpp"
 #include "support/natural_pictures.hpp"
-#include "dermis/plan.hpp"
 #include "support/random.hpp"
 
 using dermis::Camera;
@@ -94,12 +94,12 @@ TEST_CASE("a device does to additively separable light what the marginal does", 
   const TapsDesign design{.model = Model::pre_integrated, .count = 127, .placement = Placement::importance};
   for (const char* name : {"skin", "marble", "dipole-skin1"}) {
     const Profile& profile = dermis::preset(name).profile;
-    // The size that the taps of a rung were made for.
+    // The size that the taps of a level were made for.
     const dermis::Taps taps = dermis::make_taps(profile, design);
-    const dermis::Rung& rung = taps.rungs[dermis::Taps::rung_index(static_cast<float>(random.uniform(4, 50)))];
-    const double pixel_mm = 1 / static_cast<double>(rung.footprint);
-    const auto last_px = static_cast<int>(rung.offsets_px.size());
-    Card card{.width = 150, .height = 130, .px_per_mm = static_cast<double>(rung.footprint), .light = {}};
+    const dermis::TapLevel& level = taps.levels[dermis::Taps::level_index(static_cast<float>(random.uniform(4, 50)))];
+    const double pixel_mm = 1 / static_cast<double>(level.px_per_mm);
+    const auto last_px = static_cast<int>(level.offsets_px.size());
+    Card card{.width = 150, .height = 130, .px_per_mm = static_cast<double>(level.px_per_mm), .light = {}};
     std::vector<double> across(card.width), down(card.height);
     for (double& value : across) value = random.uniform(0, 1);
     for (int x = 60; x < card.width; ++x) across[x] += 3;  // a step too
@@ -176,7 +176,7 @@ TEST_CASE("the filter is as far from exact as its taps predict", "[flat]") {
       const double predicted = dermis::make_tap_set(profile, design, 1 / px_per_mm).predicted_rel_l2;
       CAPTURE(test_seed(), name, px_per_mm, static_cast<int>(design.model), design.rank, design.count, error,
               predicted);
-      // One part of one picture is not the mean over all of them, and taps made for the next rung are a few per cent
+      // One part of one picture is not the mean over all of them, and taps made for the next level are a few per cent
       // too wide or narrow, which tells where little else is wrong.
       CHECK(error <= 2 * predicted + 2e-3);
       CHECK(error >= predicted / 3);

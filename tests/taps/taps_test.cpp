@@ -5,8 +5,8 @@
 #include <numeric>
 #include <vector>
 
-#include "support/catch.hpp"
 #include "dermis/error.hpp"
+#include "support/catch.hpp"
 #include "support/random.hpp"
 #include "taps/tables/radial_table.hpp"
 
@@ -14,24 +14,24 @@ using dermis::make_taps;
 using dermis::Model;
 using dermis::Placement;
 using dermis::Profile;
-using dermis::Rung;
+using dermis::TapLevel;
 using dermis::Taps;
 using dermis::TapsDesign;
 
 namespace {
 
-/// Weights of one rung on a plane parallel to the screen, as a pass has them: of the centre, then of each pair.
-std::vector<double> weights_of(const Taps& taps, const Rung& rung, std::size_t term, int c) {
+/// Weights of one level on a plane parallel to the screen, as a pass has them: of the centre, then of each pair.
+std::vector<double> weights_of(const Taps& taps, const TapLevel& level, std::size_t term, int c) {
   const auto along = [&](std::size_t t, std::size_t pair) {
-    return rung.weights[pair * taps.terms.size() + t].length_mm[c] *
-           dermis::value_at(taps.terms[t].falloff, c, rung.offsets_px[pair] / static_cast<double>(rung.footprint));
+    return level.weights[pair * taps.terms.size() + t].length_mm[c] *
+           dermis::value_at(taps.terms[t].falloff, c, level.offsets_px[pair] / static_cast<double>(level.px_per_mm));
   };
   std::vector<double> weights = {
-      rung.core_gain[term][c] *
-      dermis::value_at(taps.terms[term].core, c,
-                       std::sqrt(static_cast<double>(rung.core_half_width_px / rung.footprint)))};
-  for (std::size_t pair = 0; pair < rung.offsets_px.size(); ++pair) {
-    const double share = rung.weights[pair * taps.terms.size() + term].share[c];
+      level.centre_gain[term][c] *
+      dermis::value_at(taps.terms[term].centre, c,
+                       std::sqrt(static_cast<double>(level.centre_half_width_px / level.px_per_mm)))};
+  for (std::size_t pair = 0; pair < level.offsets_px.size(); ++pair) {
+    const double share = level.weights[pair * taps.terms.size() + term].share[c];
     weights.push_back(along(term, pair) + share * along(0, pair));
   }
   return weights;
@@ -62,7 +62,7 @@ const TapsDesign some_designs[] = {
 
 }  // namespace
 
-TEST_CASE("every rung holds all light in sorted, distinct whole-pixel taps", "[taps]") {
+TEST_CASE("every level holds all light in sorted, distinct whole-pixel taps", "[taps]") {
   Random random(200);
   const double d = std::exp(random.uniform(-10, 10));
   // At this width the narrowest Gaussian rounds to a little less than nothing at a far tap.
@@ -83,18 +83,18 @@ TEST_CASE("every rung holds all light in sorted, distinct whole-pixel taps", "[t
         }
         CHECK(kept == Approx(1).epsilon(1e-5));
       }
-      for (const Rung& rung : taps.rungs) {
-        CAPTURE(rung.footprint * taps.radius_mm);
-        REQUIRE(static_cast<int>(rung.offsets_px.size()) <= design.count / 2);
-        REQUIRE(rung.weights.size() == rung.offsets_px.size() * taps.terms.size());
+      for (const TapLevel& level : taps.levels) {
+        CAPTURE(level.px_per_mm * taps.radius_mm);
+        REQUIRE(static_cast<int>(level.offsets_px.size()) <= design.count / 2);
+        REQUIRE(level.weights.size() == level.offsets_px.size() * taps.terms.size());
         int previous = 0;
-        for (const int offset_px : rung.offsets_px) {
+        for (const int offset_px : level.offsets_px) {
           REQUIRE(offset_px > previous);
           previous = offset_px;
         }
         for (std::size_t t = 0; t < taps.terms.size(); ++t) {
           for (int c = 0; c < 3; ++c) {
-            const std::vector<double> weights = weights_of(taps, rung, t, c);
+            const std::vector<double> weights = weights_of(taps, level, t, c);
             for (const double weight : weights) REQUIRE(std::isfinite(weight));
             if (!taps.terms[t].normalised) continue;
             for (const double weight : weights) REQUIRE(weight >= 0);
@@ -114,19 +114,20 @@ TEST_CASE("on a plane the passes weigh as the tap set does", "[taps]") {
   for (const TapsDesign& design : some_designs) {
     const Taps taps = make_taps(profile, design);
     for (const float radius_px : {5.3F, 31.0F, 90.0F}) {
-      const Rung& rung = taps.rungs[Taps::rung_index(radius_px)];
-      const dermis::TapSet set = dermis::make_tap_set(profile, design, 1 / static_cast<double>(rung.footprint));
-      // The ladder starts its search for taps at those of the next rung, so that only what is not searched is the same.
+      const TapLevel& level = taps.levels[Taps::level_index(radius_px)];
+      const dermis::TapSet set = dermis::make_tap_set(profile, design, 1 / static_cast<double>(level.px_per_mm));
+      // The level table starts its search for taps at those of the next level, so that only what is not searched is the
+      // same.
       if (design.placement == Placement::optimised && radius_px > static_cast<float>(design.count / 2)) continue;
       const auto middle = static_cast<int>(set.offsets_px.size()) / 2;
       CAPTURE(static_cast<int>(design.model), design.count, radius_px);
-      REQUIRE(static_cast<int>(rung.offsets_px.size()) == middle);
+      REQUIRE(static_cast<int>(level.offsets_px.size()) == middle);
       for (int c = 0; c < 3; ++c) {
-        const std::vector<double> weights = weights_of(taps, rung, 0, c);
+        const std::vector<double> weights = weights_of(taps, level, 0, c);
         for (int i = 0; i <= middle; ++i) {
-          // Weights are rounded to float32 in the rung; those at which a narrow term has vanished are left out.
+          // Weights are rounded to float32 in the level; those at which a narrow term has vanished are left out.
           CHECK(set.terms[0].weights[middle + i][c] == Approx(weights[i]).margin(1e-5));
-          if (i > 0) CHECK(set.offsets_px[middle + i] == rung.offsets_px[i - 1]);
+          if (i > 0) CHECK(set.offsets_px[middle + i] == level.offsets_px[i - 1]);
         }
       }
     }
@@ -136,30 +137,30 @@ TEST_CASE("on a plane the passes weigh as the tap set does", "[taps]") {
 TEST_CASE("a kernel that the taps can cover has one tap per pixel", "[taps]") {
   const Profile profile = dermis::preset("marble").profile;
   const Taps taps = make_taps(profile, by_importance(25));
-  const Rung& rung = taps.rungs[Taps::rung_index(11)];
-  CHECK(rung.core_half_width_px == 0.5F);
-  REQUIRE(rung.offsets_px.size() == 11);
-  const std::vector<double> weights = weights_of(taps, rung, 0, 0);
+  const TapLevel& level = taps.levels[Taps::level_index(11)];
+  CHECK(level.centre_half_width_px == 0.5F);
+  REQUIRE(level.offsets_px.size() == 11);
+  const std::vector<double> weights = weights_of(taps, level, 0, 0);
   for (int i = 0; i < 10; ++i) {
-    REQUIRE(rung.offsets_px[i] == i + 1);
-    const double footprint = rung.footprint;
-    const double begin = (i + 0.5) / footprint;
-    const double end = (i + 1.5) / footprint;
+    REQUIRE(level.offsets_px[i] == i + 1);
+    const double px_per_mm = level.px_per_mm;
+    const double begin = (i + 0.5) / px_per_mm;
+    const double end = (i + 1.5) / px_per_mm;
     CHECK(weights[i + 1] == Approx(profile.edge_tail(0, begin) - profile.edge_tail(0, end)).epsilon(1e-5));
   }
 }
 
-TEST_CASE("rungs divide octaves in sixteen", "[taps]") {
-  CHECK(Taps::rung_index(0.49F) == -1);
-  CHECK(Taps::rung_index(std::numeric_limits<float>::quiet_NaN()) == -1);
-  CHECK(Taps::rung_index(0.5F) == 0);
-  CHECK(Taps::rung_index(1.0F) == 16);
-  CHECK(Taps::rung_index(1.0625F) == 17);
-  CHECK(Taps::rung_index(std::numeric_limits<float>::infinity()) == Taps::octaves * 16 - 1);
+TEST_CASE("levels divide octaves in sixteen", "[taps]") {
+  CHECK(Taps::level_index(0.49F) == -1);
+  CHECK(Taps::level_index(std::numeric_limits<float>::quiet_NaN()) == -1);
+  CHECK(Taps::level_index(0.5F) == 0);
+  CHECK(Taps::level_index(1.0F) == 16);
+  CHECK(Taps::level_index(1.0625F) == 17);
+  CHECK(Taps::level_index(std::numeric_limits<float>::infinity()) == Taps::octaves * 16 - 1);
   const Taps taps = make_taps(dermis::preset("wax").profile, by_importance(7));
   for (const float radius_px : {0.6F, 3.3F, 100.0F, 9000.0F}) {
-    const Rung& rung = taps.rungs[Taps::rung_index(radius_px)];
-    CHECK(rung.footprint * taps.radius_mm == Approx(radius_px).epsilon(1.0 / 32));
+    const TapLevel& level = taps.levels[Taps::level_index(radius_px)];
+    CHECK(level.px_per_mm * taps.radius_mm == Approx(radius_px).epsilon(1.0 / 32));
   }
 }
 
@@ -170,13 +171,13 @@ TEST_CASE("tables follow the profile", "[taps]") {
     for (int c = 0; c < 3; ++c) {
       for (double share = 0.02; share < 0.99; share += 0.0371) {
         const double x = preset.profile.half_width(c, share);
-        // The octaves of the falloff reach to a hundredth of the widest channel's radius, those of the core to a
+        // The octaves of the falloff reach to a hundredth of the widest channel's radius, those of the centre to a
         // thousandth and less.
         if (x > taps.radius_mm / 60) {
           CHECK(dermis::value_at(taps.terms[0].falloff, c, x) == Approx(preset.profile.marginal(c, x)).epsilon(1.5e-2));
         }
         if (x > taps.radius_mm / 2000) {
-          CHECK(dermis::value_at(taps.terms[0].core, c, std::sqrt(x)) == Approx(share).epsilon(4e-3));
+          CHECK(dermis::value_at(taps.terms[0].centre, c, std::sqrt(x)) == Approx(share).epsilon(4e-3));
         }
       }
     }

@@ -3,8 +3,8 @@
 
 #include <optional>
 
-#include "support/guarded_image.hpp"
 #include "dermis/texture.hpp"
+#include "support/guarded_image.hpp"
 
 /// What to leave out or to hold still.
 struct RandomTextureChoice {

@@ -1,9 +1,9 @@
 // Each bad call about textures: kind and message.
 #include <cmath>
 
-#include "support/catch.hpp"
 #include "dermis/error.hpp"
 #include "dermis/texture.hpp"
+#include "support/catch.hpp"
 #include "support/failure.hpp"
 
 using dermis::Device;

@@ -3,8 +3,8 @@
 #include <future>
 #include <utility>
 
-#include "support/catch.hpp"
 #include "opencl/device.hpp"
+#include "support/catch.hpp"
 #include "texture/random_texture.hpp"
 
 using dermis::Device;

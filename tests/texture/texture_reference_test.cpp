@@ -1,7 +1,7 @@
 // The kernels of texture space against the oracle, within the bound that it derives from float rounding.
+#include "dermis/oracle/texture.hpp"
 #include "support/catch.hpp"
 #include "texture/random_texture.hpp"
-#include "dermis/oracle/texture.hpp"
 
 using dermis::Device;
 using dermis::Profile;

@@ -5,13 +5,13 @@
 #include <cmath>
 #include <numeric>
 
+#include "dermis/oracle/texture.hpp"
+#include "dermis/plan.hpp"
 #include "support/catch.hpp"
 #include "support/guarded_image.hpp"
 #include "support/natural_pictures.hpp"
-#include "support/some_profiles.hpp"
-#include "dermis/oracle/texture.hpp"
-#include "dermis/plan.hpp"
 #include "support/random.hpp"
+#include "support/some_profiles.hpp"
 
 using dermis::Device;
 using dermis::Profile;
@@ -201,7 +201,7 @@ TEST_CASE("where texels are alike a texture is scattered as a card is", "[textur
     texture.scatter(skin, method);
     const double error = relative_l2(middle(texture.scattered), middle(flat));
     CAPTURE(test_seed(), static_cast<int>(method), mm, taps_error, error);
-    // The weights of a flat cell are made for kernels up to 1/256 of an octave narrower or wider: 0.27 %.
+    // The weights of a flat block are made for kernels up to 1/256 of an octave narrower or wider: 0.27 %.
     CHECK(error < 0.0027 + (method == TextureMethod::gaussians ? 0.001 : 0.003) + 2 * taps_error);
   }
 }

@@ -3,8 +3,8 @@
 #include <cstddef>
 #include <string_view>
 
-#include "dermis/error.hpp"
 #include "arguments/number_argument.hpp"
+#include "dermis/error.hpp"
 
 namespace dermis::program {
 

@@ -11,11 +11,11 @@
 
 #include "arguments/bad_pixels_argument.hpp"
 #include "arguments/cryptomatte_argument.hpp"
-#include "dermis/error.hpp"
 #include "arguments/number_argument.hpp"
 #include "arguments/profile_argument.hpp"
 #include "arguments/quality_arguments.hpp"
 #include "arguments/word_argument.hpp"
+#include "dermis/error.hpp"
 
 namespace dermis::program {
 namespace {

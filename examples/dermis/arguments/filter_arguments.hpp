@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "dermis/plan.hpp"
 #include "arguments/design_arguments.hpp"
 #include "arguments/disc_arguments.hpp"
 #include "arguments/material_arguments.hpp"
@@ -13,6 +12,7 @@
 #include "arguments/quality_arguments.hpp"
 #include "arguments/texture_arguments.hpp"
 #include "commands/translucency_step.hpp"
+#include "dermis/plan.hpp"
 
 namespace dermis::program {
 

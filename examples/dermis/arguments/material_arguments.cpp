@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <utility>
 
-#include "dermis/error.hpp"
 #include "arguments/number_argument.hpp"
 #include "arguments/profile_argument.hpp"
+#include "dermis/error.hpp"
 
 namespace dermis::program {
 namespace {

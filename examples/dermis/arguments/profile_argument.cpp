@@ -4,9 +4,9 @@
 #include <optional>
 #include <vector>
 
+#include "arguments/number_argument.hpp"
 #include "dermis/error.hpp"
 #include "files/gaussian_file.hpp"
-#include "arguments/number_argument.hpp"
 #include "files/table_file.hpp"
 
 namespace dermis::program {

@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
-#include "dermis/error.hpp"
 #include "arguments/number_argument.hpp"
 #include "arguments/word_argument.hpp"
+#include "dermis/error.hpp"
 
 namespace dermis::program {
 

@@ -45,8 +45,8 @@ Choice choose(const Profile& profile, const TapsDesign& wanted, double pixel_mm)
 /// What a tolerance makes of the design for pixels of one size.
 int taps_at(const Profile& profile, const TapsDesign& design, double pixel_mm) {
   const Taps taps = make_taps(profile, design);
-  const int rung = Taps::rung_index(static_cast<float>(taps.radius_mm / pixel_mm));
-  return rung < 0 ? 1 : 2 * static_cast<int>(taps.rungs[static_cast<std::size_t>(rung)].offsets_px.size()) + 1;
+  const int level = Taps::level_index(static_cast<float>(taps.radius_mm / pixel_mm));
+  return level < 0 ? 1 : 2 * static_cast<int>(taps.levels[static_cast<std::size_t>(level)].offsets_px.size()) + 1;
 }
 
 void report_design(const Profile& profile, const TapsDesign& design, MaterialReport& material) {

@@ -12,14 +12,14 @@
 #include <string_view>
 #include <vector>
 
-#include "files/channel_groups.hpp"
+#include "arguments/number_argument.hpp"
+#include "arguments/word_argument.hpp"
 #include "commands/commands.hpp"
 #include "dermis/error.hpp"
 #include "dermis/exr.hpp"
-#include "arguments/number_argument.hpp"
+#include "files/channel_groups.hpp"
 #include "files/output_file.hpp"
 #include "files/picture_png.hpp"
-#include "arguments/word_argument.hpp"
 
 namespace dermis::program {
 namespace {

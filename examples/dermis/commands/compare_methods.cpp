@@ -9,12 +9,12 @@
 #include <deque>
 #include <utility>
 
+#include "arguments/material_arguments.hpp"
 #include "dermis/oracle/compare.hpp"
 #include "dermis/oracle/rule_2012.hpp"
-#include "report/gnuplot.hpp"
-#include "arguments/material_arguments.hpp"
 #include "files/output_file.hpp"
 #include "files/picture_png.hpp"
+#include "report/gnuplot.hpp"
 
 namespace dermis::program {
 namespace {

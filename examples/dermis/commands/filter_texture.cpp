@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "arguments/profile_argument.hpp"
 #include "dermis/error.hpp"
 #include "dermis/exr.hpp"
 #include "dermis/texture.hpp"
@@ -16,7 +17,6 @@
 #include "files/loaded_frame.hpp"
 #include "files/output_file.hpp"
 #include "files/pass_channels.hpp"
-#include "arguments/profile_argument.hpp"
 #include "report/stopwatch.hpp"
 
 namespace dermis::program {

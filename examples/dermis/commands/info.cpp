@@ -8,17 +8,17 @@
 #include <string>
 #include <vector>
 
+#include "arguments/material_arguments.hpp"
+#include "arguments/picture_arguments.hpp"
+#include "arguments/profile_argument.hpp"
 #include "commands/commands.hpp"
 #include "dermis/error.hpp"
 #include "dermis/exr.hpp"
 #include "dermis/plan.hpp"
-#include "report/json_text.hpp"
 #include "files/loaded_frame.hpp"
-#include "arguments/material_arguments.hpp"
-#include "arguments/picture_arguments.hpp"
-#include "arguments/profile_argument.hpp"
-#include "report/role_text.hpp"
 #include "files/surface_pixels.hpp"
+#include "report/json_text.hpp"
+#include "report/role_text.hpp"
 
 namespace dermis::program {
 namespace {
@@ -73,8 +73,8 @@ Reach reach_of(const NamedProfile& named, const SurfacePixels& pixels, const Inf
                const std::optional<double>& mm_per_unit) {
   Reach reach{without_folders(named.text), kernel_radius_mm(named.profile), {}};
   if (info.camera && mm_per_unit && pixels.median_depth_units) {
-    const auto px_per_mm = footprint(info.camera->camera, *pixels.median_depth_units, *mm_per_unit);
-    reach.radius_px = {reach.radius_mm * px_per_mm[0], reach.radius_mm * px_per_mm[1]};
+    const auto scale = px_per_mm(info.camera->camera, *pixels.median_depth_units, *mm_per_unit);
+    reach.radius_px = {reach.radius_mm * scale[0], reach.radius_mm * scale[1]};
   }
   return reach;
 }

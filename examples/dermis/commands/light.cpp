@@ -11,17 +11,17 @@
 #include <string>
 #include <vector>
 
+#include "arguments/number_argument.hpp"
+#include "arguments/picture_arguments.hpp"
+#include "arguments/word_argument.hpp"
 #include "commands/commands.hpp"
 #include "dermis/error.hpp"
 #include "dermis/exr.hpp"
 #include "dermis/shading.hpp"
 #include "dermis/version.hpp"
 #include "files/lights_file.hpp"
-#include "arguments/number_argument.hpp"
 #include "files/output_file.hpp"
 #include "files/pass_channels.hpp"
-#include "arguments/picture_arguments.hpp"
-#include "arguments/word_argument.hpp"
 
 namespace dermis::program {
 namespace {

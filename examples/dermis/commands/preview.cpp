@@ -4,11 +4,11 @@
 #include <string>
 #include <vector>
 
+#include "arguments/word_argument.hpp"
 #include "commands/commands.hpp"
 #include "dermis/exr.hpp"
 #include "files/output_file.hpp"
 #include "files/picture_png.hpp"
-#include "arguments/word_argument.hpp"
 
 namespace dermis::program {
 namespace {

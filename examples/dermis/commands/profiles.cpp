@@ -4,11 +4,11 @@
 #include <memory>
 #include <string>
 
+#include "arguments/word_argument.hpp"
 #include "commands/commands.hpp"
 #include "dermis/profile.hpp"
 #include "files/output_file.hpp"
 #include "report/profile_plot.hpp"
-#include "arguments/word_argument.hpp"
 
 namespace dermis::program {
 namespace {

@@ -10,16 +10,16 @@
 #include <string>
 #include <vector>
 
-#include "commands/commands.hpp"
-#include "dermis/error.hpp"
 #include "arguments/design_arguments.hpp"
 #include "arguments/number_argument.hpp"
-#include "files/output_file.hpp"
 #include "arguments/profile_argument.hpp"
+#include "arguments/word_argument.hpp"
+#include "commands/commands.hpp"
+#include "dermis/error.hpp"
+#include "files/output_file.hpp"
 #include "report/taps_plot.hpp"
 #include "report/taps_report.hpp"
 #include "report/taps_source.hpp"
-#include "arguments/word_argument.hpp"
 
 namespace dermis::program {
 namespace {

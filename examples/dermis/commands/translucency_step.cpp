@@ -4,9 +4,9 @@
 
 #include <filesystem>
 
+#include "arguments/number_argument.hpp"
 #include "dermis/error.hpp"
 #include "files/loaded_frame.hpp"
-#include "arguments/number_argument.hpp"
 
 namespace dermis::program {
 namespace {

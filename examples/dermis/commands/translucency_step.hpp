@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
+#include "arguments/material_arguments.hpp"
 #include "dermis/exr.hpp"
 #include "dermis/translucency.hpp"
 #include "files/lights_file.hpp"
 #include "files/loaded_frame.hpp"
-#include "arguments/material_arguments.hpp"
 
 namespace dermis::program {
 

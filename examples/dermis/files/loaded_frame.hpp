@@ -3,10 +3,10 @@
 
 #include <vector>
 
+#include "arguments/material_arguments.hpp"
 #include "dermis/exr.hpp"
 #include "dermis/frame.hpp"
 #include "dermis/plan.hpp"
-#include "arguments/material_arguments.hpp"
 
 namespace dermis::program {
 

@@ -46,14 +46,14 @@ SurfacePixels count_surface(std::span<const float> depth, std::span<const float>
   return surface;
 }
 
-std::array<double, 2> footprint(const Camera& camera, double depth_units, double mm_per_unit) {
+std::array<double, 2> px_per_mm(const Camera& camera, double depth_units, double mm_per_unit) {
   const bool perspective = camera.projection == Camera::Projection::perspective;
   const double mm = perspective ? depth_units * mm_per_unit : mm_per_unit;
   return {camera.scale_x / mm, camera.scale_y / mm};
 }
 
 double finest_pixel_mm(const Camera& camera, double depth_units, double mm_per_unit) {
-  const auto [x, y] = footprint(camera, depth_units, mm_per_unit);
+  const auto [x, y] = px_per_mm(camera, depth_units, mm_per_unit);
   return 1 / std::max(x, y);
 }
 

@@ -29,7 +29,7 @@ MaterialCounts count_materials(std::span<const float> ids, std::span<const float
 SurfacePixels count_surface(std::span<const float> depth, std::span<const float> mask);
 
 /// Pixels per mm of a surface parallel to the screen, along x and along y.
-std::array<double, 2> footprint(const Camera& camera, double depth_units, double mm_per_unit);
+std::array<double, 2> px_per_mm(const Camera& camera, double depth_units, double mm_per_unit);
 
 /// The size of a pixel there, mm, along the axis that has the smaller ones.
 double finest_pixel_mm(const Camera& camera, double depth_units, double mm_per_unit);

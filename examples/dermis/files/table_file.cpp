@@ -8,8 +8,8 @@
 #include <fstream>
 #include <optional>
 
-#include "dermis/error.hpp"
 #include "arguments/number_argument.hpp"
+#include "dermis/error.hpp"
 
 namespace dermis::program {
 namespace {
@@ -24,12 +24,12 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(first, text.find_last_not_of(blanks) - first + 1);
 }
 
-std::vector<std::string_view> cells_of(std::string_view line) {
-  std::vector<std::string_view> cells;
+std::vector<std::string_view> blocks_of(std::string_view line) {
+  std::vector<std::string_view> blocks;
   for (;;) {
     const std::size_t at = line.find(',');
-    cells.push_back(trimmed(line.substr(0, at)));
-    if (at == std::string_view::npos) return cells;
+    blocks.push_back(trimmed(line.substr(0, at)));
+    if (at == std::string_view::npos) return blocks;
     line.remove_prefix(at + 1);
   }
 }
@@ -52,8 +52,8 @@ class Reader {
       if (line_ == 1 && line.starts_with(byte_order_mark)) line.erase(0, byte_order_mark.size());
       const std::string_view content = trimmed(std::string_view(line).substr(0, line.find('#')));
       if (content.empty()) continue;
-      const auto cells = cells_of(content);
-      if (!first || !is_header(cells)) rows.push_back(read_row(cells, rows.empty() ? -1 : rows.back().r_mm));
+      const auto blocks = blocks_of(content);
+      if (!first || !is_header(blocks)) rows.push_back(read_row(blocks, rows.empty() ? -1 : rows.back().r_mm));
       first = false;
     }
     line_ = 0;
@@ -63,26 +63,27 @@ class Reader {
 
  private:
   /// A line without a single number.
-  static bool is_header(const std::vector<std::string_view>& cells) {
-    return std::none_of(cells.begin(), cells.end(), [](std::string_view cell) { return parse_real(cell).has_value(); });
+  static bool is_header(const std::vector<std::string_view>& blocks) {
+    return std::none_of(blocks.begin(), blocks.end(),
+                        [](std::string_view block) { return parse_real(block).has_value(); });
   }
 
-  TableRow read_row(const std::vector<std::string_view>& cells, double last_mm) const {
-    if (cells.size() != columns)
-      fail(fmt::format("{} column{}", cells.size(), cells.size() == 1 ? "" : "s"), "four: r_mm,R,G,B");
-    TableRow row{read_number(cells, 0), {}};
+  TableRow read_row(const std::vector<std::string_view>& blocks, double last_mm) const {
+    if (blocks.size() != columns)
+      fail(fmt::format("{} column{}", blocks.size(), blocks.size() == 1 ? "" : "s"), "four: r_mm,R,G,B");
+    TableRow row{read_number(blocks, 0), {}};
     if (row.r_mm != 0 && (row.r_mm < 1e-9 || row.r_mm > 1e9))
       fail(fmt::format("r_mm = {}", row.r_mm), "0 or 1e-9 to 1e9 mm");
     if (row.r_mm <= last_mm) fail(fmt::format("r_mm = {} after {}", row.r_mm, last_mm), "ascending distances");
-    for (std::size_t channel = 0; channel < 3; ++channel) row.value[channel] = read_number(cells, channel + 1);
+    for (std::size_t channel = 0; channel < 3; ++channel) row.value[channel] = read_number(blocks, channel + 1);
     return row;
   }
 
-  double read_number(const std::vector<std::string_view>& cells, std::size_t column) const {
-    constexpr std::size_t shown = 80;  // characters of a cell, for an error
-    const auto number = parse_real(cells[column]);
+  double read_number(const std::vector<std::string_view>& blocks, std::size_t column) const {
+    constexpr std::size_t shown = 80;  // characters of a block, for an error
+    const auto number = parse_real(blocks[column]);
     if (!number || *number < 0 || *number > 1e100)
-      fail(fmt::format("{} = {}", column_names[column], cells[column].substr(0, shown)), "a number from 0 to 1e100");
+      fail(fmt::format("{} = {}", column_names[column], blocks[column].substr(0, shown)), "a number from 0 to 1e100");
     return *number;
   }
 

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "dermis/version.hpp"
 #include "arguments/design_arguments.hpp"
+#include "dermis/version.hpp"
 #include "report/json_text.hpp"
 #include "report/role_text.hpp"
 #include "report/tile_map.hpp"

@@ -30,12 +30,12 @@ struct Reference {
   Picture touched;  ///< 1 channel: 1 where the filter scattered, 0 where it must leave the pixel alone
 };
 
-/// The same taps, summed pixel by pixel; see Taps. Where a pass has no taps for a pixel (rung -1, or a pixel that gives
-/// light but takes none) each term is its sum at one point: 1 times what it reads if normalised, else Term::sum times
-/// it; but the second pass returns pixels that take none as they were. Pixels whose light or albedo is not finite
-/// belong to the surface (depths, slopes, rungs and what is flat) but neither give nor take light. Reads the frame's
+/// The same taps, summed pixel by pixel; see Taps. Where a pass has no taps for a pixel (level -1, or a pixel that
+/// gives light but takes none) each term is its sum at one point: 1 times what it reads if normalised, else Term::sum
+/// times it; but the second pass returns pixels that take none as they were. Pixels whose light or albedo is not finite
+/// belong to the surface (depths, slopes, levels and what is flat) but neither give nor take light. Reads the frame's
 /// host images. The bounds hold for outputs of float32: a caller that stores half adds half an ulp of that. Where
-/// float32 cannot tell which rung a cell has or whether it is flat, they admit every outcome.
+/// float32 cannot tell which level a block has or whether it is flat, they admit every outcome.
 Reference separable(const Frame& frame, std::span<const Material> materials, const Options& options);
 
 /// The surface integral over all visible pixels of the material,

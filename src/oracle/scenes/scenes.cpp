@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "dermis/error.hpp"
-#include "oracle/scenes/subjects.hpp"
 #include "oracle/math/vec3.hpp"
+#include "oracle/scenes/subjects.hpp"
 #include "oracle/screen/view.hpp"
 
 namespace dermis::oracle {

@@ -5,14 +5,14 @@
 #include <vector>
 
 #include "dermis/oracle/reference.hpp"
+#include "oracle/math/gauss_legendre.hpp"
+#include "oracle/math/profile_table.hpp"
+#include "oracle/math/weighted_sum.hpp"
 #include "oracle/screen/disc_samples.hpp"
 #include "oracle/screen/disc_texels.hpp"
 #include "oracle/screen/frame_images.hpp"
-#include "oracle/math/gauss_legendre.hpp"
-#include "oracle/math/profile_table.hpp"
 #include "oracle/screen/recompose.hpp"
 #include "oracle/screen/rotation.hpp"
-#include "oracle/math/weighted_sum.hpp"
 
 namespace dermis::oracle {
 
@@ -252,8 +252,8 @@ class DiscFilter {
   }
 
   static Bounded share_of_all(const SurfacePixel& pixel, const Material& material, Bounded width) {
-    const Bounded footprint = larger(pixel.footprint[horizontal], pixel.footprint[vertical]);
-    const Bounded radius_px = as_float(material.taps.radius_mm) * width * footprint;
+    const Bounded px_per_mm = larger(pixel.px_per_mm[horizontal], pixel.px_per_mm[vertical]);
+    const Bounded radius_px = as_float(material.taps.radius_mm) * width * px_per_mm;
     return held_within(rounded(radius_px, division_roundings) - exact(few_radius_px), 0, 1);
   }
 

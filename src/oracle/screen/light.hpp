@@ -5,8 +5,8 @@
 
 #include "dermis/oracle/picture.hpp"
 #include "dermis/plan.hpp"
-#include "oracle/screen/frame_images.hpp"
 #include "oracle/math/rounding.hpp"
+#include "oracle/screen/frame_images.hpp"
 
 namespace dermis::oracle {
 

@@ -6,7 +6,8 @@
 #include <vector>
 
 #include "dermis/oracle/reference.hpp"
-#include "oracle/screen/cell.hpp"
+#include "oracle/math/weighted_sum.hpp"
+#include "oracle/screen/block.hpp"
 #include "oracle/screen/choice.hpp"
 #include "oracle/screen/frame_images.hpp"
 #include "oracle/screen/light.hpp"
@@ -14,7 +15,6 @@
 #include "oracle/screen/rotation.hpp"
 #include "oracle/screen/surface.hpp"
 #include "oracle/screen/tap_weights.hpp"
-#include "oracle/math/weighted_sum.hpp"
 
 namespace dermis::oracle {
 
@@ -52,11 +52,11 @@ Bounded scaled_sum(const Outcome& values, std::span<const Term> terms, int c) {
 /// and makes one picture of the sum over terms.
 class Pass {
  public:
-  Pass(Axis axis, const Surface& surface, const Cells& cells, std::span<const Material> materials, const Frame& frame,
+  Pass(Axis axis, const Surface& surface, const Blocks& blocks, std::span<const Material> materials, const Frame& frame,
        const Options& options, const BoundedPicture& light)
       : axis_(axis),
         surface_(surface),
-        cells_(cells),
+        blocks_(blocks),
         materials_(materials),
         camera_(frame.camera),
         options_(options),
@@ -68,7 +68,7 @@ class Pass {
  private:
   std::span<const Term> terms_of(int x, int y) const { return materials_[surface_.at(x, y).material].taps.terms; }
   Values input(std::size_t term, int x, int y) const;
-  Outcome at(int x, int y, std::span<const CellKind> kinds);
+  Outcome at(int x, int y, std::span<const BlockClass> kinds);
   Outcome source(int x, int y) const;
   Outcome without_taps(int x, int y) const;
   Outcome with_taps(int x, int y, const Way& way);
@@ -85,7 +85,7 @@ class Pass {
 
   Axis axis_;
   const Surface& surface_;
-  const Cells& cells_;
+  const Blocks& blocks_;
   std::span<const Material> materials_;
   Camera camera_;
   const Options& options_;
@@ -96,10 +96,10 @@ class Pass {
 
 void Pass::run(std::span<const BoundedPicture> inputs, std::span<BoundedPicture> outputs) {
   inputs_ = inputs;
-  for (int row = 0; row < cells_.rows(); ++row) {
-    for (int column = 0; column < cells_.columns(); ++column) {
-      const std::vector<CellKind> kinds = cells_.kinds(axis_, column, row);
-      cells_.for_each_pixel(column, row, [&](int x, int y) {
+  for (int row = 0; row < blocks_.rows(); ++row) {
+    for (int column = 0; column < blocks_.columns(); ++column) {
+      const std::vector<BlockClass> kinds = blocks_.kinds(axis_, column, row);
+      blocks_.for_each_pixel(column, row, [&](int x, int y) {
         if (!surface_.at(x, y).gives_light()) return;
         const Outcome outcome = at(x, y, kinds);
         for (std::size_t t = 0; t < outcome.size(); ++t) {
@@ -117,12 +117,12 @@ Values Pass::input(std::size_t term, int x, int y) const {
 }
 
 // Where a decision is too close for float32, every outcome is within the bound.
-Outcome Pass::at(int x, int y, std::span<const CellKind> kinds) {
+Outcome Pass::at(int x, int y, std::span<const BlockClass> kinds) {
   const SurfacePixel& pixel = surface_.at(x, y);
   const bool takes = pixel.takes_light();
   if (!takes && !pixel.takes_light_unsure()) return source(x, y);
   const std::vector<Way> all = ways(kinds, materials_[pixel.material].taps, options_.jitter);
-  const auto outcome = [&](const Way& way) { return way.rung < 0 ? without_taps(x, y) : with_taps(x, y, way); };
+  const auto outcome = [&](const Way& way) { return way.level < 0 ? without_taps(x, y) : with_taps(x, y, way); };
   Outcome result = takes ? outcome(all.front()) : source(x, y);
   if (pixel.takes_light_unsure()) admit(result, source(x, y));
   for (std::size_t i = takes ? 1 : 0; i < all.size(); ++i) admit(result, outcome(all[i]));
@@ -152,7 +152,7 @@ Outcome Pass::without_taps(int x, int y) const {
 Outcome Pass::with_taps(int x, int y, const Way& way) {
   const SurfacePixel& pixel = surface_.at(x, y);
   const Taps& taps = materials_[pixel.material].taps;
-  const Rung& rung = taps.rungs[way.rung];
+  const TapLevel& level = taps.levels[way.level];
   const TapWeights weights(axis_, surface_, x, y, taps, way);
   sums_.resize(taps.terms.size());
   for (auto& sum : sums_) {
@@ -160,11 +160,11 @@ Outcome Pass::with_taps(int x, int y, const Way& way) {
   }
   add_center(x, y, weights);
   const Direction turned = Direction::turned(axis_, x, y, options_.seed, camera_);
-  for (std::size_t i = 0; i < rung.offsets_px.size(); ++i) {
+  for (std::size_t i = 0; i < level.offsets_px.size(); ++i) {
     for (const int side : {1, -1}) {
-      const int offset_px = side * rung.offsets_px[i];
+      const int offset_px = side * level.offsets_px[i];
       if (static_cast<int>(i) < way.rotated) {
-        const auto [dx, dy] = turned.offset(rung.offsets_px[i]);
+        const auto [dx, dy] = turned.offset(level.offsets_px[i]);
         add_tap(x, y, {{{side * dx, side * dy}}}, side, weights, i);
       } else if (axis_ == horizontal) {
         add_tap(x, y, {{{offset_px, 0}}}, side, weights, i);
@@ -290,14 +290,14 @@ std::size_t most_terms(std::span<const Material> materials) {
 Reference separable(const Frame& frame, std::span<const Material> materials, const Options& options) {
   const FrameImages images = read_images(frame);
   const Surface surface(frame, images, materials, options.sheared && options.jitter == 0);
-  const Cells cells(surface, materials, may_be_flat(images, materials, options));
+  const Blocks blocks(surface, materials, may_be_flat(images, materials, options));
   const Light light(images, options);
   const BoundedPicture x = light.filtered();
   const std::vector<BoundedPicture> lights(most_terms(materials), x);
   std::vector<BoundedPicture> across = lights;
-  Pass(horizontal, surface, cells, materials, frame, options, x).run(lights, across);
+  Pass(horizontal, surface, blocks, materials, frame, options, x).run(lights, across);
   BoundedPicture scattered = x;
-  Pass(vertical, surface, cells, materials, frame, options, x).run(across, std::span(&scattered, 1));
+  Pass(vertical, surface, blocks, materials, frame, options, x).run(across, std::span(&scattered, 1));
   return recompose(surface, light, scattered);
 }
 

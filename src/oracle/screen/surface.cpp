@@ -86,7 +86,7 @@ Bounded widest(const std::array<Bounded, 3>& width_factor, const Taps& taps) {
 
 void decide_wide(SurfacePixel& pixel, const Taps& taps) {
   const Bounded radius_px =
-      larger(pixel.effective_footprint[horizontal], pixel.effective_footprint[vertical]) * as_float(taps.radius_mm);
+      larger(pixel.effective_px_per_mm[horizontal], pixel.effective_px_per_mm[vertical]) * as_float(taps.radius_mm);
   const auto narrow = static_cast<double>(Taps::min_radius_px);
   pixel.wide = radius_px.value >= narrow;
   pixel.wide_unsure = radius_px.low() < narrow && radius_px.high() >= narrow;
@@ -114,8 +114,8 @@ Surface::Surface(const Frame& frame, const FrameImages& images, std::span<const 
       pixel.width_factor = width_factor(images, material, x, y);
       const Bounded spread = widest(pixel.width_factor, material.taps);
       for (const Axis axis : {horizontal, vertical}) {
-        pixel.footprint[axis] = view_.footprint(axis, z_mm);
-        pixel.effective_footprint[axis] = pixel.footprint[axis] * spread;
+        pixel.px_per_mm[axis] = view_.px_per_mm(axis, z_mm);
+        pixel.effective_px_per_mm[axis] = pixel.px_per_mm[axis] * spread;
       }
       decide_wide(pixel, material.taps);
     }
@@ -170,7 +170,7 @@ Bounded Surface::cross_step(int x, int y, const DepthSteps& along_x, const Depth
 // T = (size + ray g, ray' g, g) along x; its change per pixel is (2 size' g + ray h, ray' h, h), where g and h are the
 // first and the second difference of depth, and size' = the change of the ray per pixel. Of a shear s, which adds s
 // columns to each row, g and h are those along (s, 1), and T has s times what it would have along x too.
-Bend Surface::bend(int x, int y, Axis axis, const ShearChoice& shear, float footprint) const {
+Bend Surface::bend(int x, int y, Axis axis, const ShearChoice& shear, float px_per_mm) const {
   const SurfacePixel& pixel = at(x, y);
   const DepthSteps steps = depth_steps(x, y, axis);
   Bounded g = exact(0.5) * (steps.forward + steps.backward);
@@ -191,7 +191,7 @@ Bend Surface::bend(int x, int y, Axis axis, const ShearChoice& shear, float foot
     length2 = length2 + change * change;
     growth = growth + change * change_of_change;
   }
-  const Bounded square = exact(footprint) * exact(footprint);
+  const Bounded square = exact(px_per_mm) * exact(px_per_mm);
   return {square * rounded(length2, 2) - exact(1), square * rounded(growth, 2)};
 }
 

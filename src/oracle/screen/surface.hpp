@@ -7,8 +7,8 @@
 
 #include "dermis/frame.hpp"
 #include "dermis/oracle/reference.hpp"
-#include "oracle/screen/frame_images.hpp"
 #include "oracle/math/rounding.hpp"
+#include "oracle/screen/frame_images.hpp"
 #include "oracle/screen/shear.hpp"
 #include "oracle/screen/view.hpp"
 
@@ -22,17 +22,17 @@ struct SurfacePixel {
   bool wide_unsure = false;  ///< so close to half a pixel that a float32 device may decide otherwise
   double covered = 1;        ///< m, the share of the pixel that is of the material, above 0
   std::array<Bounded, 3> position_mm{};
-  std::array<Bounded, 2> footprint{};     ///< px per mm along x and y
+  std::array<Bounded, 2> px_per_mm{};     ///< px per mm along x and y
   std::array<Bounded, 3> width_factor{};  ///< k: the profile is R(r / k) / k^2
   std::array<Bounded, 2> segment_mm{};    ///< length of surface that the pixel spans along either pass, times m^2
-  std::array<Bounded, 2> effective_footprint{};  ///< footprint times the widest channel's k, px per mm
+  std::array<Bounded, 2> effective_px_per_mm{};  ///< px_per_mm times the widest channel's k, px per mm
 
   bool gives_light() const { return material >= 0 && !bad; }
   bool takes_light() const { return wide && !bad; }
   bool takes_light_unsure() const { return wide_unsure && !bad; }
 };
 
-/// How a surface differs about a pixel from a plane parallel to the screen of some footprint: q and k of Taps, before
+/// How a surface differs about a pixel from a plane parallel to the screen of some px_per_mm: q and k of Taps, before
 /// they are held within bounds.
 struct Bend {
   Bounded stretch;
@@ -72,7 +72,7 @@ class Surface {
   ShearChoice shear(int x, int y) const;
 
   /// `shear`: of the vertical pass.
-  Bend bend(int x, int y, Axis axis, const ShearChoice& shear, float footprint) const;
+  Bend bend(int x, int y, Axis axis, const ShearChoice& shear, float px_per_mm) const;
 
   /// 1 channel: 1 where a pixel takes light.
   Picture touched() const;

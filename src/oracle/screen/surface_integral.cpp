@@ -6,12 +6,12 @@
 #include <vector>
 
 #include "dermis/oracle/reference.hpp"
-#include "oracle/screen/frame_images.hpp"
 #include "oracle/math/gauss_legendre.hpp"
+#include "oracle/math/vec3.hpp"
+#include "oracle/screen/frame_images.hpp"
 #include "oracle/screen/light.hpp"
 #include "oracle/screen/recompose.hpp"
 #include "oracle/screen/surface.hpp"
-#include "oracle/math/vec3.hpp"
 
 namespace dermis::oracle {
 

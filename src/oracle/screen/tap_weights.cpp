@@ -31,42 +31,42 @@ constexpr std::size_t middle_part = 4;
 }  // namespace
 
 TapWeights::TapWeights(Axis axis, const Surface& surface, int x, int y, const Taps& taps, const Way& way)
-    : axis_(axis), pixel_(surface.at(x, y)), taps_(taps), rung_(taps.rungs[way.rung]), way_(way) {
+    : axis_(axis), pixel_(surface.at(x, y)), taps_(taps), level_(taps.levels[way.level]), way_(way) {
   if (way.shape != Shape::smooth) return;
-  bend_ = surface.bend(x, y, axis, way.shear, rung_.footprint);
+  bend_ = surface.bend(x, y, axis, way.shear, level_.px_per_mm);
   bend_.stretch = held_within(bend_.stretch, exact(Taps::most_stretch));
-  if (rung_.offsets_px.empty()) return;
-  bend_.skew = held_within(bend_.skew, exact(Taps::most_skew) / exact(rung_.offsets_px.back()));
+  if (level_.offsets_px.empty()) return;
+  bend_.skew = held_within(bend_.skew, exact(Taps::most_skew) / exact(level_.offsets_px.back()));
 }
 
 TapWeights::Place TapWeights::place(const SurfacePixel& tap, int side) const {
-  return {side, distance2(pixel_, tap), exact(rung_.footprint) * tap.segment_mm[axis_]};
+  return {side, distance2(pixel_, tap), exact(level_.px_per_mm) * tap.segment_mm[axis_]};
 }
 
 /// `point`: 0 is the centre, 1 the first pair.
 WeightParts TapWeights::plane_weight(std::size_t point, std::size_t term, int c) const {
   const std::size_t at = point * taps_.terms.size() + term;
-  if (way_.shape == Shape::flat) return {exact(rung_.flat_weights[way_.flat_part][at][c])};
-  return {exact(rung_.flat_weights[middle_part][at][c]), bend_.stretch * exact(rung_.stretch_weights[at][c])};
+  if (way_.shape == Shape::flat) return {exact(level_.flat_weights[way_.flat_part][at][c])};
+  return {exact(level_.flat_weights[middle_part][at][c]), bend_.stretch * exact(level_.stretch_weights[at][c])};
 }
 
 WeightParts TapWeights::center(std::size_t term, int c) const {
   if (way_.shape != Shape::curved) return plane_weight(0, term, c);
-  const Bounded half_width = exact(rung_.core_half_width_px) * pixel_.segment_mm[axis_] / pixel_.width_factor[c];
-  return {exact(rung_.core_gain[term][c]) * look_up(taps_.terms[term].core, c, half_width * half_width)};
+  const Bounded half_width = exact(level_.centre_half_width_px) * pixel_.segment_mm[axis_] / pixel_.width_factor[c];
+  return {exact(level_.centre_gain[term][c]) * look_up(taps_.terms[term].centre, c, half_width * half_width)};
 }
 
 WeightParts TapWeights::tap(const Place& place, std::size_t pair, std::size_t term, int c) const {
   if (way_.shape == Shape::curved) return {by_distance(place, pair, term, c)};
   WeightParts parts = plane_weight(pair + 1, term, c);
   if (way_.shape == Shape::smooth) {
-    parts[2] = exact(place.side) * bend_.skew * exact(rung_.skew_weights[pair * taps_.terms.size() + term][c]);
+    parts[2] = exact(place.side) * bend_.skew * exact(level_.skew_weights[pair * taps_.terms.size() + term][c]);
   }
   return parts;
 }
 
 Bounded TapWeights::by_distance(const Place& place, std::size_t pair, std::size_t term, int c) const {
-  const TapWeight& weight = rung_.weights[pair * taps_.terms.size() + term];
+  const TapWeight& weight = level_.weights[pair * taps_.terms.size() + term];
   const Bounded k = pixel_.width_factor[c];
   const Bounded per_k = exact(1) / k;
   const Bounded r2 = place.distance2_mm2 * per_k * per_k;

@@ -5,8 +5,8 @@
 #include <cstddef>
 
 #include "dermis/taps.hpp"
-#include "oracle/screen/choice.hpp"
 #include "oracle/math/rounding.hpp"
+#include "oracle/screen/choice.hpp"
 #include "oracle/screen/surface.hpp"
 
 namespace dermis::oracle {
@@ -17,7 +17,7 @@ using WeightParts = std::array<Bounded, 3>;
 /// The weights of one pass at one pixel: w_0 and w_i of the comment at Taps.
 class TapWeights {
  public:
-  /// Keeps references to taps and rung.
+  /// Keeps references to taps and level.
   TapWeights(Axis axis, const Surface& surface, int x, int y, const Taps& taps, const Way& way);
 
   /// A pixel that a tap falls on.
@@ -38,9 +38,9 @@ class TapWeights {
   Axis axis_;
   const SurfacePixel& pixel_;
   const Taps& taps_;
-  const Rung& rung_;
+  const TapLevel& level_;
   Way way_;
-  Bend bend_{};  ///< on a smooth cell
+  Bend bend_{};  ///< on a smooth block
 };
 
 }  // namespace dermis::oracle

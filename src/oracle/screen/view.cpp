@@ -4,7 +4,7 @@ namespace dermis::oracle {
 
 // A device may take one over the size of a pixel, and that from a reciprocal of the scale that it got: a division and
 // two roundings more.
-Bounded View::footprint(Axis axis, Bounded z_mm) const {
+Bounded View::px_per_mm(Axis axis, Bounded z_mm) const {
   return rounded(as_float(scale(axis)) / (is_perspective() ? z_mm : as_float(mm_per_unit_)), division_roundings + 2);
 }
 

@@ -22,9 +22,9 @@ class View {
   Bounded depth_mm(double depth) const { return exact(depth) * as_float(mm_per_unit_); }
 
   /// Pixels per mm along an axis.
-  Bounded footprint(Axis axis, Bounded z_mm) const;
+  Bounded px_per_mm(Axis axis, Bounded z_mm) const;
 
-  /// Width or height of a pixel, mm: the inverse of footprint().
+  /// Width or height of a pixel, mm: the inverse of px_per_mm().
   Bounded size_mm(Axis axis, Bounded z_mm) const;
 
   /// How much of size_mm() comes with a part of the depth.

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <unsupported/Eigen/NonLinearOptimization>
 
-#include "taps/prediction/natural_images.hpp"
 #include "taps/model/separable_model.hpp"
+#include "taps/prediction/natural_images.hpp"
 
 namespace dermis {
 

@@ -18,7 +18,7 @@ struct TapRun {
 
 /// The pixels of one side.
 struct TapRuns {
-  int core_px = 0;  ///< pixels next to the centre that the centre tap stands for
+  int centre_px = 0;  ///< pixels next to the centre that the centre tap stands for
   std::vector<TapRun> runs;
 };
 
@@ -26,10 +26,10 @@ struct TapRuns {
 TapRuns every_pixel(int last_px);
 
 /// At most `pairs` runs up to last_px, for pixels of the size. What is `optimised` starts as `importance`.
-TapRuns make_runs(const Profile& profile, Placement placement, double footprint, int last_px, int pairs);
+TapRuns make_runs(const Profile& profile, Placement placement, double px_per_mm, int last_px, int pairs);
 
 /// Where in their runs the taps sit: at the centres of the light of the widest channel; for whole pixels at that of the
 /// two beside it that keeps the second moment of the kernel, what earlier runs owe carried along.
-std::vector<double> offsets_in(const Profile& profile, const TapRuns& runs, double footprint, Fetch fetch);
+std::vector<double> offsets_in(const Profile& profile, const TapRuns& runs, double px_per_mm, Fetch fetch);
 
 }  // namespace dermis

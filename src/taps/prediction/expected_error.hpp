@@ -7,9 +7,9 @@
 #include <unsupported/Eigen/FFT>
 #include <vector>
 
+#include "taps/model/separable_model.hpp"
 #include "taps/placement/lattice.hpp"
 #include "taps/prediction/natural_images.hpp"
-#include "taps/model/separable_model.hpp"
 
 namespace dermis {
 

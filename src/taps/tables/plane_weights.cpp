@@ -11,7 +11,7 @@ namespace dermis {
 
 namespace {
 
-/// How a surface differs from a plane parallel to the screen whose pixels are the rung's: the length of surface that a
+/// How a surface differs from a plane parallel to the screen whose pixels are the level's: the length of surface that a
 /// tap stands for, and its distance, are longer by these factors.
 struct Stretch {
   double length = 1;
@@ -19,17 +19,18 @@ struct Stretch {
 };
 
 /// The weights of a pass over such a surface: of all terms of the centre, then of the first pair, ... of one channel.
-std::vector<double> weights_on_surface(const Rung& rung, const std::vector<Term>& terms, int c, Stretch stretch) {
-  const double pixel_mm = 1 / static_cast<double>(rung.footprint);
-  const double core_mm = static_cast<double>(rung.core_half_width_px) * pixel_mm * stretch.length;
+std::vector<double> weights_on_surface(const TapLevel& level, const std::vector<Term>& terms, int c, Stretch stretch) {
+  const double pixel_mm = 1 / static_cast<double>(level.px_per_mm);
+  const double centre_mm = static_cast<double>(level.centre_half_width_px) * pixel_mm * stretch.length;
   std::vector<double> weights;
   for (std::size_t t = 0; t < terms.size(); ++t) {
-    weights.push_back(static_cast<double>(rung.core_gain[t][c]) * value_at(terms[t].core, c, std::sqrt(core_mm)));
+    weights.push_back(static_cast<double>(level.centre_gain[t][c]) *
+                      value_at(terms[t].centre, c, std::sqrt(centre_mm)));
   }
-  for (std::size_t i = 0; i < rung.offsets_px.size(); ++i) {
-    const double r_mm = rung.offsets_px[i] * pixel_mm * stretch.distance;
+  for (std::size_t i = 0; i < level.offsets_px.size(); ++i) {
+    const double r_mm = level.offsets_px[i] * pixel_mm * stretch.distance;
     for (std::size_t t = 0; t < terms.size(); ++t) {
-      const TapWeight& its = rung.weights[i * terms.size() + t];
+      const TapWeight& its = level.weights[i * terms.size() + t];
       double weight = static_cast<double>(its.length_mm[c]) * stretch.length * value_at(terms[t].falloff, c, r_mm);
       if (t > 0) weight += static_cast<double>(its.share[c]) * weights[(i + 1) * terms.size()];
       weights.push_back(weight);
@@ -38,14 +39,14 @@ std::vector<double> weights_on_surface(const Rung& rung, const std::vector<Term>
   return weights;
 }
 
-/// The weights of a channel as fitted for the rung, changed as those of a pass change with the size of a pixel. Those
+/// The weights of a channel as fitted for the level, changed as those of a pass change with the size of a pixel. Those
 /// of a normalised term sum to 1; there is none for the centre of another.
 class PlaneWeights {
  public:
-  PlaneWeights(const Rung& rung, const std::vector<Term>& terms, const PlacedTaps& placed, int c, double stretch)
-      : terms_(terms.size()), weights_(weights_on_surface(rung, terms, c, {stretch, stretch})) {
-    const std::vector<double> nominal = weights_on_surface(rung, terms, c, {});
-    const std::size_t rows = rung.offsets_px.size() + 1;
+  PlaneWeights(const TapLevel& level, const std::vector<Term>& terms, const PlacedTaps& placed, int c, double stretch)
+      : terms_(terms.size()), weights_(weights_on_surface(level, terms, c, {stretch, stretch})) {
+    const std::vector<double> nominal = weights_on_surface(level, terms, c, {});
+    const std::size_t rows = level.offsets_px.size() + 1;
     for (std::size_t t = 0; t < terms_; ++t) {
       double total = 0;
       for (std::size_t row = 0; row < rows; ++row) {
@@ -69,12 +70,12 @@ class PlaneWeights {
 
 }  // namespace
 
-std::vector<std::array<float, 3>> make_flat_weights(const Rung& rung, const std::vector<Term>& terms,
+std::vector<std::array<float, 3>> make_flat_weights(const TapLevel& level, const std::vector<Term>& terms,
                                                     const PlacedTaps& placed, double stretch) {
-  const std::size_t rows = rung.offsets_px.size() + 1;
+  const std::size_t rows = level.offsets_px.size() + 1;
   std::vector<std::array<float, 3>> result(rows * terms.size());
   for (int c = 0; c < 3; ++c) {
-    const PlaneWeights weights(rung, terms, placed, c, stretch);
+    const PlaneWeights weights(level, terms, placed, c, stretch);
     for (std::size_t t = 0; t < terms.size(); ++t) {
       double pairs = 0;
       for (std::size_t row = 1; row < rows; ++row) {
@@ -88,14 +89,14 @@ std::vector<std::array<float, 3>> make_flat_weights(const Rung& rung, const std:
   return result;
 }
 
-std::vector<std::array<float, 3>> make_stretch_weights(const Rung& rung, const std::vector<Term>& terms,
+std::vector<std::array<float, 3>> make_stretch_weights(const TapLevel& level, const std::vector<Term>& terms,
                                                        const PlacedTaps& placed) {
   constexpr double step = 0.3;
-  const std::size_t rows = rung.offsets_px.size() + 1;
+  const std::size_t rows = level.offsets_px.size() + 1;
   std::vector<std::array<float, 3>> result(rows * terms.size());
   for (int c = 0; c < 3; ++c) {
-    const PlaneWeights less(rung, terms, placed, c, std::sqrt(1 - step));
-    const PlaneWeights more(rung, terms, placed, c, std::sqrt(1 + step));
+    const PlaneWeights less(level, terms, placed, c, std::sqrt(1 - step));
+    const PlaneWeights more(level, terms, placed, c, std::sqrt(1 + step));
     for (std::size_t t = 0; t < terms.size(); ++t) {
       double pairs = 0;
       for (std::size_t row = 1; row < rows; ++row) {
@@ -109,21 +110,21 @@ std::vector<std::array<float, 3>> make_stretch_weights(const Rung& rung, const s
   return result;
 }
 
-std::vector<std::array<float, 3>> make_skew_weights(const Rung& rung, const std::vector<Term>& terms) {
+std::vector<std::array<float, 3>> make_skew_weights(const TapLevel& level, const std::vector<Term>& terms) {
   constexpr double step = 0.1;
-  const std::size_t pairs = rung.offsets_px.size();
+  const std::size_t pairs = level.offsets_px.size();
   std::vector<std::array<float, 3>> result(pairs * terms.size());
   for (int c = 0; c < 3; ++c) {
-    const std::vector<double> nominal = weights_on_surface(rung, terms, c, {});
-    const std::vector<double> less = weights_on_surface(rung, terms, c, {1 - step, 1 - step / 2});
-    const std::vector<double> more = weights_on_surface(rung, terms, c, {1 + step, 1 + step / 2});
+    const std::vector<double> nominal = weights_on_surface(level, terms, c, {});
+    const std::vector<double> less = weights_on_surface(level, terms, c, {1 - step, 1 - step / 2});
+    const std::vector<double> more = weights_on_surface(level, terms, c, {1 + step, 1 + step / 2});
     for (std::size_t t = 0; t < terms.size(); ++t) {
       double total = nominal[t];
       for (std::size_t i = 1; i <= pairs; ++i) total += 2 * nominal[i * terms.size() + t];
       const double scale = terms[t].normalised && total > 0 ? 1 / total : 1;
       for (std::size_t i = 0; i < pairs; ++i) {
         const std::size_t at = (i + 1) * terms.size() + t;
-        const double change = scale * rung.offsets_px[i] * (more[at] - less[at]) / (2 * step);
+        const double change = scale * level.offsets_px[i] * (more[at] - less[at]) / (2 * step);
         result[i * terms.size() + t][c] = static_cast<float>(change);
       }
     }

@@ -17,7 +17,7 @@ static inline vfloat share_of_surface(Row matte, int x) {
 
 // The factor for pixels of one material.
 static inline vrgb width_factor(global const struct MaterialParams* its, vrgb albedo, vfloat mask) {
-  vrgb k = same_rgb(fmin(mask, (vfloat)(1.0f)));
+  vrgb k = broadcast_rgb(fmin(mask, (vfloat)(1.0f)));
 #if HAS_ALBEDO
   if (its->width_follows_albedo) {
     k.r /= shape_factor(albedo.r);

@@ -1,4 +1,4 @@
-/// Cells of 16 x 16 pixels: their shape, and what footprint their rungs are chosen by. See Taps.
+/// Blocks of 16 x 16 pixels: their shape, and what px_per_mm their levels are chosen by. See Taps.
 #pragma once
 
 #include <algorithm>
@@ -15,34 +15,34 @@
 
 namespace dermis::oracle {
 
-inline constexpr int cell_px = 16;
+inline constexpr int block_px = 16;
 
 enum class Shape { flat, smooth, curved };
 
-/// What a pass makes of a cell.
-struct CellKind {
+/// What a pass makes of a block.
+struct BlockClass {
   Shape shape;
-  Bounded footprint;  ///< px per mm: the largest of the pixels times k, or unless curved that of the tilted surface
+  Bounded px_per_mm;  ///< px per mm: the largest of the pixels times k, or unless curved that of the tilted surface
   ShearChoice shear;  ///< of the vertical pass; 0 if curved
 };
 
-class Cells {
+class Blocks {
  public:
   /// Keeps references. `may_be_flat`: no pixel has a width of its own and no tap is rotated.
-  Cells(const Surface& surface, std::span<const Material> materials, bool may_be_flat);
+  Blocks(const Surface& surface, std::span<const Material> materials, bool may_be_flat);
 
   int columns() const { return columns_; }
   int rows() const { return rows_; }
 
-  /// What a pass along that axis makes of a cell: first the oracle's decision, then any other that a float32 device may
-  /// come to. The footprint is 0 if no pixel scatters.
-  std::vector<CellKind> kinds(Axis axis, int column, int row) const;
+  /// What a pass along that axis makes of a block: first the oracle's decision, then any other that a float32 device
+  /// may come to. The px_per_mm is 0 if no pixel scatters.
+  std::vector<BlockClass> kinds(Axis axis, int column, int row) const;
 
-  /// Calls visit(x, y) for the pixels of a cell that lie in the frame.
+  /// Calls visit(x, y) for the pixels of a block that lie in the frame.
   template <typename Visit>
   void for_each_pixel(int column, int row, const Visit& visit) const {
-    for (int y = cell_px * row; y < std::min(cell_px * (row + 1), surface_.height()); ++y) {
-      for (int x = cell_px * column; x < std::min(cell_px * (column + 1), surface_.width()); ++x) visit(x, y);
+    for (int y = block_px * row; y < std::min(block_px * (row + 1), surface_.height()); ++y) {
+      for (int x = block_px * column; x < std::min(block_px * (column + 1), surface_.width()); ++x) visit(x, y);
     }
   }
 
@@ -76,17 +76,17 @@ class Cells {
   static constexpr std::size_t most_materials = 127;
   using MaterialSet = std::bitset<most_materials>;
 
-  struct Cell {
+  struct Block {
     Range depth_mm;
     std::array<Range, 2> step_mm;  ///< change of depth to the next pixel of the same material, along x and along y
-    std::array<Largest, 2> footprint;
+    std::array<Largest, 2> px_per_mm;
     MaterialSet scatters;          ///< some pixel has a wide kernel of that material
     MaterialSet surely_scatters;   ///< on any device
     MaterialSet perhaps_scatters;  ///< on some
     bool is_partial = false;       ///< a material covers only a part of some pixel
   };
 
-  /// How far around a cell its pixels' surroundings are looked at.
+  /// How far around a block its pixels' surroundings are looked at.
   struct Reach {
     int nominal_px;
     int least_px;  ///< of a device
@@ -99,10 +99,10 @@ class Cells {
     bool unsure;
   };
 
-  /// What is looked at around a cell, and along which shear.
+  /// What is looked at around a block, and along which shear.
   struct Extent {
-    int along_cells;  ///< to either side along the pass
-    int side_cells;   ///< across it
+    int along_blocks;  ///< to either side along the pass
+    int side_blocks;   ///< across it
     ShearChoice shear;
 
     bool operator==(const Extent&) const = default;
@@ -110,16 +110,16 @@ class Cells {
 
   struct Surroundings;
 
-  void add_pixel(Cell& cell, int x, int y) const;
-  Reach reach(Axis axis, const Cell& cell) const;
-  const Cell& at(int column, int row) const { return cells_[static_cast<std::size_t>(row) * columns_ + column]; }
+  void add_pixel(Block& block, int x, int y) const;
+  Reach reach(Axis axis, const Block& block) const;
+  const Block& at(int column, int row) const { return blocks_[static_cast<std::size_t>(row) * columns_ + column]; }
   Surroundings surroundings(Axis axis, int column, int row, const Extent& extent) const;
   struct Variation;
   Variation variation(Axis axis, int column, int row, const ShearChoice& shear, const Range& depth_mm,
                       const std::array<Range, 2>& step_mm) const;
   ShearChoice shear(int column, int row) const;
   std::vector<Extent> extents(Axis axis, int column, int row) const;
-  void add_kinds(Axis axis, int column, int row, const Extent& extent, std::vector<CellKind>& kinds) const;
+  void add_kinds(Axis axis, int column, int row, const Extent& extent, std::vector<BlockClass>& kinds) const;
   static Decision is_at_most(Bounded a, Bounded b);
   static Decision both(Decision a, Decision b);
 
@@ -128,7 +128,7 @@ class Cells {
   bool may_be_flat_;
   int columns_;
   int rows_;
-  std::vector<Cell> cells_;
+  std::vector<Block> blocks_;
 };
 
 }  // namespace dermis::oracle

@@ -1,4 +1,4 @@
-// Which shape a float32 device might take the cells of a frame for. For the oracle's bounds.
+// Which shape a float32 device might take the blocks of a frame for. For the oracle's bounds.
 #pragma once
 
 #include <algorithm>
@@ -16,27 +16,27 @@
 #include "oracle/float_surface.hpp"
 #include "oracle/made_frame.hpp"
 
-struct FloatCell {
+struct FloatBlock {
   bool flat = false;
   bool smooth = false;
-  float footprint = 0;  ///< if neither
+  float px_per_mm = 0;  ///< if neither
   float change_mm = 0;  ///< of position per pixel, if either
   int shear = 0;        ///< if either
 };
 
-/// Eighths of rungs; none below half a pixel.
+/// Eighths of levels; none below half a pixel.
 inline int float_step(float radius_px, bool flat, const dermis::Taps& taps) {
   if (radius_px < 0.5F) return -1;
   const std::uint32_t bits = std::bit_cast<std::uint32_t>(radius_px) - std::bit_cast<std::uint32_t>(0.5F);
   const std::uint32_t steps = (bits + (flat ? 1U << 15 : 0)) >> (23 - 7);
-  return static_cast<int>(std::min<std::size_t>(steps, 8 * taps.rungs.size() - 1));
+  return static_cast<int>(std::min<std::size_t>(steps, 8 * taps.levels.size() - 1));
 }
 
-/// The cells of one pass.
-class FloatCells {
+/// The blocks of one pass.
+class FloatBlocks {
  public:
-  FloatCells(int axis, const MadeFrame& made, std::span<const dermis::oracle::Material> materials,
-             const dermis::Options& options, const std::vector<FloatPixel>& pixels, bool fused)
+  FloatBlocks(int axis, const MadeFrame& made, std::span<const dermis::oracle::Material> materials,
+              const dermis::Options& options, const std::vector<FloatPixel>& pixels, bool fused)
       : axis_(axis),
         made_(made),
         materials_(materials),
@@ -47,13 +47,13 @@ class FloatCells {
     bool may_be_flat = made.mask.empty() && options.jitter == 0;
     for (const auto& material : materials) may_be_flat = may_be_flat && !material.width_follows_albedo;
     for (int y = 0; y < made.height; y += 16) {
-      for (int x = 0; x < made.width; x += 16) cells.push_back(cell_at(x, y, may_be_flat));
+      for (int x = 0; x < made.width; x += 16) blocks.push_back(block_at(x, y, may_be_flat));
     }
   }
 
-  const FloatCell& at(int x, int y) const { return cells[static_cast<std::size_t>(y / 16 * columns_ + x / 16)]; }
+  const FloatBlock& at(int x, int y) const { return blocks[static_cast<std::size_t>(y / 16 * columns_ + x / 16)]; }
 
-  std::vector<FloatCell> cells;
+  std::vector<FloatBlock> blocks;
 
  private:
   struct Extremes {
@@ -72,29 +72,29 @@ class FloatCells {
   const FloatPixel& pixel(int x, int y) const { return pixels_[static_cast<std::size_t>(y * made_.width + x)]; }
   float multiply_add(float a, float b, float c) const { return fused_ ? std::fma(a, b, c) : a * b + c; }
 
-  FloatCell cell_at(int x_cell, int y_cell, bool may_be_flat) const {
-    FloatCell cell;
+  FloatBlock block_at(int x_block, int y_block, bool may_be_flat) const {
+    FloatBlock block;
     std::set<int> scattering;
-    for (int y = y_cell; y < std::min(y_cell + 16, made_.height); ++y) {
-      for (int x = x_cell; x < std::min(x_cell + 16, made_.width); ++x) {
+    for (int y = y_block; y < std::min(y_block + 16, made_.height); ++y) {
+      for (int x = x_block; x < std::min(x_block + 16, made_.width); ++x) {
         const FloatPixel& p = pixel(x, y);
         if (!p.wide) continue;
-        cell.footprint = std::fmax(cell.footprint, p.footprint[axis_] * p.spread);
+        block.px_per_mm = std::fmax(block.px_per_mm, p.px_per_mm[axis_] * p.spread);
         scattering.insert(p.material);
       }
     }
     int farthest_px = 0;
     for (const int m : scattering) {
       const dermis::Taps& taps = materials_[m].taps;
-      const int step = float_step(cell.footprint * static_cast<float>(taps.radius_mm), false, taps);
-      if (step < 0 || taps.rungs[step / 8].offsets_px.empty()) continue;
-      farthest_px = std::max(farthest_px, taps.rungs[step / 8].offsets_px.back());
+      const int step = float_step(block.px_per_mm * static_cast<float>(taps.radius_mm), false, taps);
+      if (step < 0 || taps.levels[step / 8].offsets_px.empty()) continue;
+      farthest_px = std::max(farthest_px, taps.levels[step / 8].offsets_px.back());
     }
-    if (may_be_flat) judge(cell, x_cell, y_cell, 9 * farthest_px / 8);
-    return cell;
+    if (may_be_flat) judge(block, x_block, y_block, 9 * farthest_px / 8);
+    return block;
   }
 
-  /// Of the pixels of some cells.
+  /// Of the pixels of some blocks.
   struct Steepness {
     Extremes z, steps[2];
     bool is_partial = false;  ///< a material covers only a part of some pixel
@@ -120,7 +120,7 @@ class FloatCells {
     return all;
   }
 
-  /// Along the ray through the middle of a cell.
+  /// Along the ray through the middle of a block.
   float ray(int i, const int* corner) const {
     const dermis::Camera& camera = made_.camera;
     if (camera.projection != dermis::Camera::Projection::perspective) return 0;
@@ -164,11 +164,11 @@ class FloatCells {
     return static_cast<int>(std::lround(4096 * float_shear(tangents[0], tangents[1])));
   }
 
-  void judge(FloatCell& cell, int x_cell, int y_cell, int reach_px) const {
+  void judge(FloatBlock& block, int x_block, int y_block, int reach_px) const {
     const int size[2] = {made_.width, made_.height};
-    const int corner[2] = {x_cell, y_cell};
-    int begin[2] = {x_cell, y_cell};
-    int end[2] = {std::min(x_cell + 16, size[0]), std::min(y_cell + 16, size[1])};
+    const int corner[2] = {x_block, y_block};
+    int begin[2] = {x_block, y_block};
+    int end[2] = {std::min(x_block + 16, size[0]), std::min(y_block + 16, size[1])};
     const Steepness own = steepness(begin, end);
     int shear = sheared_ ? shear_of(own, corner) : 0;
     const int to_side = float_side(std::abs(shear), std::min(reach_px, std::max(size[0], size[1])));
@@ -186,10 +186,10 @@ class FloatCells {
       range = multiply_add(static_cast<float>(end[i] - begin[i]), near.steps[i].steepest(), range);
     }
     const bool unbroken = 2 * near.z.half() <= range && !near.is_partial;
-    cell.flat = unbroken && varying2 <= 0.1F * 0.1F * change2;
-    cell.smooth = unbroken && !cell.flat && varying2 <= 0.4F * 0.4F * change2;
-    cell.change_mm = std::sqrt(cell.smooth ? squared_change(own, corner, side)[0] : change2);
-    if (cell.flat || cell.smooth) cell.shear = shear;
+    block.flat = unbroken && varying2 <= 0.1F * 0.1F * change2;
+    block.smooth = unbroken && !block.flat && varying2 <= 0.4F * 0.4F * change2;
+    block.change_mm = std::sqrt(block.smooth ? squared_change(own, corner, side)[0] : change2);
+    if (block.flat || block.smooth) block.shear = shear;
   }
 
   int axis_;

@@ -1,14 +1,14 @@
-// survey: which material each pixel has, and what the surface of each cell is like. One work-item has a run of cells.
-#include "frame/image.h"
-#include "classify/rung.h"
-#include "frame/shape.h"
-#include "frame/shear.h"
+// survey: which material each pixel has, and what the surface of each block is like. One work-item has a run of blocks.
 #include "base/vector.h"
+#include "classify/tap_level.h"
+#include "frame/coverage.h"
+#include "frame/image.h"
+#include "frame/shear.h"
 
-// How many cells before their turn the images are fetched.
-#define CELLS_AHEAD 6
+// How many blocks before their turn the images are fetched.
+#define BLOCKS_AHEAD 6
 
-// One row of a cell.
+// One row of a block.
 typedef struct {
   vint material;  // as a byte of the plane
   vfloat depth;   // mm; 0 where there is no material
@@ -24,7 +24,7 @@ static inline vrgb width_of(const PixelRow* row) {
 #if PIXEL_WIDTH
   return row->k;
 #else
-  return same_rgb((vfloat)(1.0f));
+  return broadcast_rgb((vfloat)(1.0f));
 #endif
 }
 
@@ -43,14 +43,14 @@ static inline vint find_material(vfloat id, global const struct MaterialParams* 
 typedef struct {
   global const uchar *albedo, *depth, *material, *mask, *matte;
   struct ImageParams albedo_at, depth_at, material_at, mask_at, matte_at;
-} SurveyInputs;
+} ClassifyInputs;
 
 // Values of a row that is direct: they are floats side by side, and V of them in the frame.
 FORCED_INLINE vfloat read_row_values(Row row, int x, const int direct) {
   return direct ? load_floats((global const float*)row.at + x) : read_values(row, x);
 }
 
-static inline int is_direct(const struct FrameParams* f, const SurveyInputs* in, int x) {
+static inline int is_direct(const struct FrameParams* f, const ClassifyInputs* in, int x) {
 #if PIXEL_WIDTH || HAS_MATTE
   return 0;
 #endif
@@ -64,7 +64,7 @@ static inline int is_direct(const struct FrameParams* f, const SurveyInputs* in,
   return direct;
 }
 
-FORCED_INLINE PixelRow read_row(const struct FrameParams* f, const SurveyInputs* in,
+FORCED_INLINE PixelRow read_row(const struct FrameParams* f, const ClassifyInputs* in,
                                 global const struct MaterialParams* materials, int x, int y, const int direct) {
   PixelRow row;
   row.material = (vint)(1);
@@ -80,13 +80,13 @@ FORCED_INLINE PixelRow read_row(const struct FrameParams* f, const SurveyInputs*
   row.depth = units * f->mm_per_unit;
 #endif
 #if PIXEL_WIDTH
-  row.k = same_rgb((vfloat)(1.0f));
+  row.k = broadcast_rgb((vfloat)(1.0f));
   vfloat mask = (vfloat)(1.0f);
 #if HAS_MASK
   mask = read_values(row_of(in->mask, &in->mask_at, f->width, y, 0), x);
   row.material &= AS_MASK(mask > 0.0f) & AS_MASK(isfinite(mask));
 #endif
-  vrgb albedo = same_rgb((vfloat)(1.0f));
+  vrgb albedo = broadcast_rgb((vfloat)(1.0f));
 #if HAS_ALBEDO
   const RgbRow albedo_row = rgb_row_of(in->albedo, &in->albedo_at, f->width, y);
   albedo = read_rgb(&albedo_row, x);
@@ -108,13 +108,13 @@ FORCED_INLINE PixelRow read_row(const struct FrameParams* f, const SurveyInputs*
   row.material &= AS_MASK(share > 0.0f) & AS_MASK(isfinite(share));
   row.partial = AS_MASK(row.material != 0) & AS_MASK(share < 1.0f);
 #endif
-  row.depth = keep(AS_MASK(row.material != 0), row.depth);
+  row.depth = select_or_zero(AS_MASK(row.material != 0), row.depth);
   return row;
 }
 
 // Processors do not see sixteen rows coming.
-static inline void fetch_row_ahead(const struct FrameParams* f, const SurveyInputs* in, int x, int y) {
-  const int later_x = x + CELLS_AHEAD * CELL;
+static inline void fetch_row_ahead(const struct FrameParams* f, const ClassifyInputs* in, int x, int y) {
+  const int later_x = x + BLOCKS_AHEAD * BLOCK;
 #if HAS_MATERIAL
   const Row ids = row_of(in->material, &in->material_at, f->width, y, 0);
   fetch_ahead(ids.at, ids.pixel_stride, later_x);
@@ -157,23 +157,23 @@ static inline int count_lanes(vint mask) {
   return -(c.x + c.y);
 }
 
-// What a cell's pixels have in common.
+// What a block's pixels have in common.
 typedef struct {
   Range depth, along_x, along_y;
   vfloat size_x, size_y;  // smallest ones of pixels that scatter, mm
   vint scattered, narrow, partial;
-  uint scattering[4];  // as in CellParams
+  uint scattering[4];  // as in BlockParams
 } Seen;
 
 static inline void see_material(Seen* seen, int index) { seen->scattering[index / 32] |= 1u << (index % 32); }
 
-// Without the last lane, whose next pixel is in another cell.
+// Without the last lane, whose next pixel is in another block.
 static inline Range without_last(Range a) {
   const Range range = {a.low.s0123456789abcdee, a.high.s0123456789abcdee};
   return range;
 }
 
-// A row of a cell as if it were of one material without gaps.
+// A row of a block as if it were of one material without gaps.
 FORCED_INLINE void see_row(Seen* seen, vfloat depth, vfloat above, int is_first) {
   seen->depth.low = lower(seen->depth.low, depth);
   seen->depth.high = higher(seen->depth.high, depth);
@@ -188,7 +188,7 @@ FORCED_INLINE void see_row(Seen* seen, vfloat depth, vfloat above, int is_first)
 #endif
 }
 
-// Whether none of such a cell is narrow.
+// Whether none of such a block is narrow.
 static inline int is_wide(const Seen* seen, const struct FrameParams* f, global const struct MaterialParams* its) {
   // Sizes grow with depth.
   const float high = highest(seen->depth.high);
@@ -205,7 +205,7 @@ static inline void finish_wide(Seen* seen, const struct FrameParams* f, int mate
   seen->along_x = without_last(seen->along_x);
 }
 
-// A row of any cell. Returns its material with that of narrow pixels marked.
+// A row of any block. Returns its material with that of narrow pixels marked.
 static inline vint see_mixed_row(Seen* seen, const struct FrameParams* f, global const struct MaterialParams* materials,
                                  const PixelRow* row, const PixelRow* above) {
   const vint has_next = (vint)(-1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, 0);
@@ -244,28 +244,28 @@ static inline vint see_mixed_row(Seen* seen, const struct FrameParams* f, global
   return marked;
 }
 
-static inline void write_cell(global struct CellParams* cell, const Seen* seen) {
-  cell->depth_low = lowest(seen->depth.low);
-  cell->depth_high = highest(seen->depth.high);
-  cell->along_x_low = lowest(seen->along_x.low);
-  cell->along_x_high = highest(seen->along_x.high);
-  cell->along_y_low = lowest(seen->along_y.low);
-  cell->along_y_high = highest(seen->along_y.high);
-  // The largest footprint is that of the smallest pixel.
+static inline void write_block(global struct BlockParams* block, const Seen* seen) {
+  block->depth_low = lowest(seen->depth.low);
+  block->depth_high = highest(seen->depth.high);
+  block->along_x_low = lowest(seen->along_x.low);
+  block->along_x_high = highest(seen->along_x.high);
+  block->along_y_low = lowest(seen->along_y.low);
+  block->along_y_high = highest(seen->along_y.high);
+  // The largest px_per_mm is that of the smallest pixel.
   const int any_scattered = count_lanes(seen->scattered);
-  cell->finest_x = any_scattered > 0 ? 1.0f / lowest(seen->size_x) : 0.0f;
-  cell->finest_y = any_scattered > 0 ? 1.0f / lowest(seen->size_y) : 0.0f;
-  for (int i = 0; i < 4; ++i) cell->scattering[i] = seen->scattering[i];
-  cell->scattered = any_scattered;
-  cell->narrow = count_lanes(seen->narrow);
+  block->finest_x = any_scattered > 0 ? 1.0f / lowest(seen->size_x) : 0.0f;
+  block->finest_y = any_scattered > 0 ? 1.0f / lowest(seen->size_y) : 0.0f;
+  for (int i = 0; i < 4; ++i) block->scattering[i] = seen->scattering[i];
+  block->scattered = any_scattered;
+  block->narrow = count_lanes(seen->narrow);
 }
 
-// All rows of a cell as if it were of one material without gaps that covers all pixels, and their material into the
+// All rows of a block as if it were of one material without gaps that covers all pixels, and their material into the
 // plane. Returns that material, or -1 if it is not. With `direct` there is no call in the loop, before which registers
 // would be saved.
-FORCED_INLINE int see_cell(Seen* seen, const struct FrameParams* f, const SurveyInputs* in,
-                           global const struct MaterialParams* materials, int x, int y, int height,
-                           global uchar* surface, const int direct) {
+FORCED_INLINE int see_block(Seen* seen, const struct FrameParams* f, const ClassifyInputs* in,
+                            global const struct MaterialParams* materials, int x, int y, int height,
+                            global uchar* material_ids, const int direct) {
   vint others = (vint)(0);
   vint first = (vint)(0);
   vfloat above_depth = (vfloat)(0.0f);
@@ -278,26 +278,26 @@ FORCED_INLINE int see_cell(Seen* seen, const struct FrameParams* f, const Survey
     others |= row.partial;
 #endif
     see_row(seen, row.depth, above_depth, i == 0);
-    store_bytes(surface + (size_t)i * f->stride, row.material);
+    store_bytes(material_ids + (size_t)i * f->stride, row.material);
     above_depth = row.depth;
   }
   return any_bit(others) ? -1 : first.s0;
 }
 
-static inline void survey_cell(const struct FrameParams* f, const SurveyInputs* in,
-                               global const struct MaterialParams* materials, int cell_x, int cell_y,
-                               global uchar* surface, global struct CellParams* cell) {
+static inline void classify_block(const struct FrameParams* f, const ClassifyInputs* in,
+                                  global const struct MaterialParams* materials, int block_x, int block_y,
+                                  global uchar* material_ids, global struct BlockParams* block) {
   const Range nothing = {(vfloat)(INFINITY), (vfloat)(-INFINITY)};
   const Seen unseen = {nothing,   nothing,   nothing,   nothing.low, nothing.low,
                        (vint)(0), (vint)(0), (vint)(0), {0, 0, 0, 0}};
-  const int x = cell_x * CELL;
-  const int y = cell_y * CELL;
-  const int height = min(CELL, f->height - y);
-  global uchar* its_surface = surface + (size_t)y * f->stride + PADDING + x;
+  const int x = block_x * BLOCK;
+  const int y = block_y * BLOCK;
+  const int height = min(BLOCK, f->height - y);
+  global uchar* its_material_ids = material_ids + (size_t)y * f->stride + PADDING + x;
   Seen seen = unseen;
-  const int material = is_direct(f, in, x) ? see_cell(&seen, f, in, materials, x, y, height, its_surface, 1)
-                                           : see_cell(&seen, f, in, materials, x, y, height, its_surface, 0);
-  cell->material = max(material, 0);
+  const int material = is_direct(f, in, x) ? see_block(&seen, f, in, materials, x, y, height, its_material_ids, 1)
+                                           : see_block(&seen, f, in, materials, x, y, height, its_material_ids, 0);
+  block->material = max(material, 0);
   if (material == 0) {
     seen = unseen;
   } else if (!PIXEL_WIDTH && material > 0 && is_wide(&seen, f, materials + material - 1)) {
@@ -308,36 +308,37 @@ static inline void survey_cell(const struct FrameParams* f, const SurveyInputs* 
     for (int i = 0; i < height; ++i) {
       const PixelRow row = read_row(f, in, materials, x, y + i, 0);
       const vint marked = see_mixed_row(&seen, f, materials, &row, &above);
-      store_bytes(its_surface + (size_t)i * f->stride, marked);
+      store_bytes(its_material_ids + (size_t)i * f->stride, marked);
       above = row;
     }
-    if (any_bit(seen.narrow)) cell->material = 0;
+    if (any_bit(seen.narrow)) block->material = 0;
     if (any_bit(seen.partial)) {
       // What weighs less than it is long is looked at pixel by pixel, as a broken surface is.
       seen.depth.low = (vfloat)(-BROKEN_MM);
       seen.depth.high = (vfloat)(BROKEN_MM);
     }
   }
-  write_cell(cell, &seen);
+  write_block(block, &seen);
 }
 
-kernel void survey(struct FrameParams f, int cells_per_item, global const struct MaterialParams* materials,
-                   global const uchar* albedo, struct ImageParams albedo_at, global const uchar* depth,
-                   struct ImageParams depth_at, global const uchar* material, struct ImageParams material_at,
-                   global const uchar* mask, struct ImageParams mask_at, global const uchar* matte,
-                   struct ImageParams matte_at, global uchar* surface, global struct CellParams* cells) {
-  const SurveyInputs in = {albedo, depth, material, mask, matte, albedo_at, depth_at, material_at, mask_at, matte_at};
-  const int cell_y = get_global_id(1);
-  const int first = get_global_id(0) * cells_per_item;
-  const int last = min(first + cells_per_item, f.cells_x);
-  for (int cell_x = first; cell_x < last; ++cell_x) {
-    survey_cell(&f, &in, materials, cell_x, cell_y, surface, cells + cell_y * f.cells_x + cell_x);
+kernel void classify_blocks(struct FrameParams f, int blocks_per_item, global const struct MaterialParams* materials,
+                            global const uchar* albedo, struct ImageParams albedo_at, global const uchar* depth,
+                            struct ImageParams depth_at, global const uchar* material, struct ImageParams material_at,
+                            global const uchar* mask, struct ImageParams mask_at, global const uchar* matte,
+                            struct ImageParams matte_at, global uchar* material_ids,
+                            global struct BlockParams* blocks) {
+  const ClassifyInputs in = {albedo, depth, material, mask, matte, albedo_at, depth_at, material_at, mask_at, matte_at};
+  const int block_y = get_global_id(1);
+  const int first = get_global_id(0) * blocks_per_item;
+  const int last = min(first + blocks_per_item, f.blocks_x);
+  for (int block_x = first; block_x < last; ++block_x) {
+    classify_block(&f, &in, materials, block_x, block_y, material_ids, blocks + block_y * f.blocks_x + block_x);
   }
   // Beyond the frame there is no material.
-  for (int y = cell_y * CELL; y < min(cell_y * CELL + CELL, f.height); ++y) {
-    global uchar* row = surface + (size_t)y * f.stride;
+  for (int y = block_y * BLOCK; y < min(block_y * BLOCK + BLOCK, f.height); ++y) {
+    global uchar* row = material_ids + (size_t)y * f.stride;
     if (first == 0) store_bytes(row, (vint)(0));
-    if (last == f.cells_x) store_bytes(row + f.stride - PADDING, (vint)(0));
+    if (last == f.blocks_x) store_bytes(row + f.stride - PADDING, (vint)(0));
   }
 }
 
@@ -368,54 +369,54 @@ typedef struct {
   Interval depth, along, across;
 } Shape;
 
-static inline void join_cell(Shape* shape, global const struct CellParams* its, int axis) {
-  join(&shape->depth, its->depth_low, its->depth_high);
-  join(&shape->along, axis == 0 ? its->along_x_low : its->along_y_low,
+static inline void join_block(Shape* block_class, global const struct BlockParams* its, int axis) {
+  join(&block_class->depth, its->depth_low, its->depth_high);
+  join(&block_class->along, axis == 0 ? its->along_x_low : its->along_y_low,
        axis == 0 ? its->along_x_high : its->along_y_high);
-  join(&shape->across, axis == 0 ? its->along_y_low : its->along_x_low,
+  join(&block_class->across, axis == 0 ? its->along_y_low : its->along_x_low,
        axis == 0 ? its->along_y_high : its->along_x_high);
 }
 
-// How the camera sees a cell along a pass, and across it.
+// How the camera sees a block along a pass, and across it.
 typedef struct {
   float ray_along, ray_across;      // change of position with depth along the ray through the middle
   float slope_along, slope_across;  // as in FrameParams
   float mm_along, mm_across;
-} CellView;
+} BlockView;
 
-static inline CellView view_of(const struct FrameParams* f, int cell_x, int cell_y, int axis) {
-  const float ray_x = f->slope_x * (cell_x * CELL + 0.5f * CELL - f->center_x);
-  const float ray_y = f->slope_y * (cell_y * CELL + 0.5f * CELL - f->center_y);
-  const CellView x = {ray_x, ray_y, f->slope_x, f->slope_y, f->mm_per_px_x, f->mm_per_px_y};
-  const CellView y = {ray_y, ray_x, f->slope_y, f->slope_x, f->mm_per_px_y, f->mm_per_px_x};
+static inline BlockView view_of(const struct FrameParams* f, int block_x, int block_y, int axis) {
+  const float ray_x = f->slope_x * (block_x * BLOCK + 0.5f * BLOCK - f->center_x);
+  const float ray_y = f->slope_y * (block_y * BLOCK + 0.5f * BLOCK - f->center_y);
+  const BlockView x = {ray_x, ray_y, f->slope_x, f->slope_y, f->mm_per_px_x, f->mm_per_px_y};
+  const BlockView y = {ray_y, ray_x, f->slope_y, f->slope_x, f->mm_per_px_y, f->mm_per_px_x};
   return axis == 0 ? x : y;
 }
 
 // |T|^2 in the middle of a shape, along the pass and so many pixels across it for each.
-static inline float squared_tangent(CellView view, const Shape* shape, float side) {
-  const float z = middle(shape->depth);
-  const float g = middle(shape->along) + side * middle(shape->across);
+static inline float squared_tangent(BlockView view, const Shape* block_class, float side) {
+  const float z = middle(block_class->depth);
+  const float g = middle(block_class->along) + side * middle(block_class->across);
   const float along = view.mm_along + view.slope_along * z + view.ray_along * g;
   const float across = side * (view.mm_across + view.slope_across * z) + view.ray_across * g;
   return along * along + across * across + g * g;
 }
 
-static inline int shape_of(CellView view, const Shape* shape, float side, int along_px, int across_px) {
-  const float dz = half_range(shape->depth);
-  const float dg = half_range(shape->along) + fabs(side) * half_range(shape->across);
+static inline int shape_of(BlockView view, const Shape* block_class, float side, int along_px, int across_px) {
+  const float dz = half_range(block_class->depth);
+  const float dg = half_range(block_class->along) + fabs(side) * half_range(block_class->across);
   const float change_along = view.slope_along * dz + fabs(view.ray_along) * dg;
   const float change_across = fabs(side) * view.slope_across * dz + fabs(view.ray_across) * dg;
-  const float length2 = squared_tangent(view, shape, side);
+  const float length2 = squared_tangent(view, block_class, side);
   const float change2 = change_along * change_along + change_across * change_across + dg * dg;
-  const float slopes = along_px * (fabs(middle(shape->along)) + half_range(shape->along)) +
-                       across_px * (fabs(middle(shape->across)) + half_range(shape->across));
-  if (!(2.0f * dz <= slopes + sqrt(length2))) return SHAPE_CURVED;
-  if (change2 <= FLATNESS * FLATNESS * length2) return SHAPE_FLAT;
-  return change2 <= SMOOTHNESS * SMOOTHNESS * length2 ? SHAPE_SMOOTH : SHAPE_CURVED;
+  const float slopes = along_px * (fabs(middle(block_class->along)) + half_range(block_class->along)) +
+                       across_px * (fabs(middle(block_class->across)) + half_range(block_class->across));
+  if (!(2.0f * dz <= slopes + sqrt(length2))) return CLASS_CURVED;
+  if (change2 <= FLATNESS * FLATNESS * length2) return CLASS_FLAT;
+  return change2 <= SMOOTHNESS * SMOOTHNESS * length2 ? CLASS_SMOOTH : CLASS_CURVED;
 }
 
-// The shear of the vertical pass in the middle of a cell, columns per row times 4096: see shear_of. `view` is along y.
-static inline int shear_of_cell(CellView view, const Shape* its) {
+// The shear of the vertical pass in the middle of a block, columns per row times 4096: see shear_of. `view` is along y.
+static inline int shear_of_block(BlockView view, const Shape* its) {
   const float z = middle(its->depth);
   const float gx = middle(its->across);
   const float gy = middle(its->along);
@@ -426,142 +427,142 @@ static inline int shear_of_cell(CellView view, const Shape* its) {
   return fabs(shear) < INFINITY ? (int)rint(4096.0f * clamp(shear, -1.0f, 1.0f)) : 0;
 }
 
-// The farthest tap of the materials that a cell scatters by, px.
-static inline int farthest_tap_of(global const struct CellParams* cell, global const struct MaterialParams* materials,
-                                  global const struct RungParams* rungs, float footprint, int shape) {
+// The farthest tap of the materials that a block scatters by, px.
+static inline int farthest_tap_of(global const struct BlockParams* block, global const struct MaterialParams* materials,
+                                  global const struct TapLevelParams* levels, float px_per_mm, int block_class) {
   int farthest = 0;
   for (int m = 0; m < MATERIALS; ++m) {
-    if (!(cell->scattering[m / 32] >> (m % 32) & 1)) continue;
-    farthest = max(farthest, last_offset_of(materials + m, rungs, footprint, shape));
+    if (!(block->scattering[m / 32] >> (m % 32) & 1)) continue;
+    farthest = max(farthest, last_offset_of(materials + m, levels, px_per_mm, block_class));
   }
   return farthest;
 }
 
-// Some cells of a frame.
+// Some blocks of a frame.
 typedef struct {
   int x_begin, x_end;
   int y_begin, y_end;
-} CellBox;
+} BlockBox;
 
-// Those that lie at least partly within so many pixels of a cell, along a pass and across it.
-static inline CellBox cells_around(const struct FrameParams* f, int cell_x, int cell_y, int axis, int along_px,
-                                   int across_px) {
+// Those that lie at least partly within so many pixels of a block, along a pass and across it.
+static inline BlockBox blocks_around(const struct FrameParams* f, int block_x, int block_y, int axis, int along_px,
+                                     int across_px) {
   const int x_px = axis == 0 ? along_px : across_px;
   const int y_px = axis == 0 ? across_px : along_px;
-  const CellBox box = {
-      max(cell_x * CELL - x_px, 0) / CELL, min(cell_x * CELL + CELL - 1 + x_px, f->width - 1) / CELL + 1,
-      max(cell_y * CELL - y_px, 0) / CELL, min(cell_y * CELL + CELL - 1 + y_px, f->height - 1) / CELL + 1};
+  const BlockBox box = {
+      max(block_x * BLOCK - x_px, 0) / BLOCK, min(block_x * BLOCK + BLOCK - 1 + x_px, f->width - 1) / BLOCK + 1,
+      max(block_y * BLOCK - y_px, 0) / BLOCK, min(block_y * BLOCK + BLOCK - 1 + y_px, f->height - 1) / BLOCK + 1};
   return box;
 }
 
 // 1 + the index of the material of all pixels within reach, all in the frame, or 0.
-static inline int material_within(const struct FrameParams* f, global const struct CellParams* cells, int cell_x,
-                                  int cell_y, int axis, int along_px, int across_px) {
+static inline int material_within(const struct FrameParams* f, global const struct BlockParams* blocks, int block_x,
+                                  int block_y, int axis, int along_px, int across_px) {
   const int x_px = axis == 0 ? along_px : across_px;
   const int y_px = axis == 0 ? across_px : along_px;
-  if (cell_x * CELL < x_px || cell_x * CELL + CELL - 1 + x_px >= f->width || cell_y * CELL < y_px ||
-      cell_y * CELL + CELL - 1 + y_px >= f->height) {
+  if (block_x * BLOCK < x_px || block_x * BLOCK + BLOCK - 1 + x_px >= f->width || block_y * BLOCK < y_px ||
+      block_y * BLOCK + BLOCK - 1 + y_px >= f->height) {
     return 0;
   }
-  const int material = cells[cell_y * f->cells_x + cell_x].material;
-  const CellBox box = cells_around(f, cell_x, cell_y, axis, along_px, across_px);
+  const int material = blocks[block_y * f->blocks_x + block_x].material;
+  const BlockBox box = blocks_around(f, block_x, block_y, axis, along_px, across_px);
   for (int y = box.y_begin; y < box.y_end; ++y) {
     for (int x = box.x_begin; x < box.x_end; ++x) {
-      if (cells[y * f->cells_x + x].material != material) return 0;
+      if (blocks[y * f->blocks_x + x].material != material) return 0;
     }
   }
   return material;
 }
 
 // See Taps in taps.hpp.
-static inline struct CellPass pass_over(const struct FrameParams* f, global const struct MaterialParams* materials,
-                                        global const struct RungParams* rungs, global const struct CellParams* cells,
-                                        int cell_x, int cell_y, int axis) {
-  global const struct CellParams* own = cells + cell_y * f->cells_x + cell_x;
-  struct CellPass pass = {0.0f, SHAPE_CURVED, 0, 0};
+static inline struct BlockPass pass_over(const struct FrameParams* f, global const struct MaterialParams* materials,
+                                         global const struct TapLevelParams* levels,
+                                         global const struct BlockParams* blocks, int block_x, int block_y, int axis) {
+  global const struct BlockParams* own = blocks + block_y * f->blocks_x + block_x;
+  struct BlockPass pass = {0.0f, CLASS_CURVED, 0, 0};
   if (own->scattered == 0) {
-    if (own->narrow == 0) pass.shape = SHAPE_EMPTY;
+    if (own->narrow == 0) pass.block_class = CLASS_EMPTY;
     return pass;
   }
-  pass.footprint = axis == 0 ? own->finest_x : own->finest_y;
+  pass.px_per_mm = axis == 0 ? own->finest_x : own->finest_y;
 #if !HAS_DEPTH && !HAS_MATTE && !PIXEL_WIDTH && !JITTER
-  pass.shape = SHAPE_FLAT;
+  pass.block_class = CLASS_FLAT;
 #elif !PIXEL_WIDTH && !JITTER
-  // Footprints of flat and smooth cells may be a little larger.
-  const int farthest_px = farthest_tap_of(own, materials, rungs, pass.footprint, SHAPE_CURVED);
+  // px_per_mm of flat and smooth blocks may be a little larger.
+  const int farthest_px = farthest_tap_of(own, materials, levels, pass.px_per_mm, CLASS_CURVED);
   const int reach_px = min(farthest_px + farthest_px / 8, max(f->width, f->height));
   const Interval nothing = {INFINITY, -INFINITY};
   const Shape unseen = {nothing, nothing, nothing};
-  const CellView view = view_of(f, cell_x, cell_y, axis);
-  Shape within_cell = unseen;
-  join_cell(&within_cell, own, axis);
-  if (SHEARED && axis == 1) pass.shear = shear_of_cell(view, &within_cell);
+  const BlockView view = view_of(f, block_x, block_y, axis);
+  Shape within_block = unseen;
+  join_block(&within_block, own, axis);
+  if (SHEARED && axis == 1) pass.shear = shear_of_block(view, &within_block);
   const int side_px = side_of(abs(pass.shear), reach_px);
   if (side_px == 0) pass.shear = 0;
-  const CellBox box = cells_around(f, cell_x, cell_y, axis, reach_px, side_px);
+  const BlockBox box = blocks_around(f, block_x, block_y, axis, reach_px, side_px);
   Shape within_reach = unseen;
   for (int y = box.y_begin; y < box.y_end; ++y) {
-    for (int x = box.x_begin; x < box.x_end; ++x) join_cell(&within_reach, cells + y * f->cells_x + x, axis);
+    for (int x = box.x_begin; x < box.x_end; ++x) join_block(&within_reach, blocks + y * f->blocks_x + x, axis);
   }
-  const int x_px = min(box.x_end * CELL, f->width) - box.x_begin * CELL;
-  const int y_px = min(box.y_end * CELL, f->height) - box.y_begin * CELL;
+  const int x_px = min(box.x_end * BLOCK, f->width) - box.x_begin * BLOCK;
+  const int y_px = min(box.y_end * BLOCK, f->height) - box.y_begin * BLOCK;
   const float side = pass.shear / 4096.0f;
-  pass.shape = shape_of(view, &within_reach, side, axis == 0 ? x_px : y_px, axis == 0 ? y_px : x_px);
-  if (pass.shape == SHAPE_FLAT) {
-    pass.footprint = 1.0f / sqrt(squared_tangent(view, &within_reach, side));
-  } else if (pass.shape == SHAPE_SMOOTH) {
-    pass.footprint = 1.0f / sqrt(squared_tangent(view, &within_cell, side));
+  pass.block_class = shape_of(view, &within_reach, side, axis == 0 ? x_px : y_px, axis == 0 ? y_px : x_px);
+  if (pass.block_class == CLASS_FLAT) {
+    pass.px_per_mm = 1.0f / sqrt(squared_tangent(view, &within_reach, side));
+  } else if (pass.block_class == CLASS_SMOOTH) {
+    pass.px_per_mm = 1.0f / sqrt(squared_tangent(view, &within_block, side));
   } else {
     pass.shear = 0;
   }
 #endif
-  // A smooth cell looks at the next pixel even without taps.
-  const int taps_px = max(farthest_tap_of(own, materials, rungs, pass.footprint, pass.shape), 1);
+  // A smooth block looks at the next pixel even without taps.
+  const int taps_px = max(farthest_tap_of(own, materials, levels, pass.px_per_mm, pass.block_class), 1);
   int across_px = 0;
 #if SHEARED
-  if (axis == 1 && pass.shape == SHAPE_CURVED) across_px = min(taps_px, MOST_SIDE);
+  if (axis == 1 && pass.block_class == CLASS_CURVED) across_px = min(taps_px, MOST_SIDE);
   if (pass.shear != 0) across_px = max(side_of(abs(pass.shear), taps_px), 1);
 #endif
-  pass.material = material_within(f, cells, cell_x, cell_y, axis, taps_px, across_px);
+  pass.material = material_within(f, blocks, block_x, block_y, axis, taps_px, across_px);
   return pass;
 }
 
-// Channels of a cell that no tap is read for.
+// Channels of a block that no tap is read for.
 static inline int channels_left_alone(global const struct MaterialParams* materials,
-                                      global const struct RungParams* rungs, global const struct CellParams* cell,
-                                      struct CellPass pass) {
-  if (pass.footprint == 0.0f || cell->material == 0) return 0;
-  global const struct MaterialParams* its = materials + cell->material - 1;
-  const int rung = step_of(its, pass.footprint, pass.shape).rung;
-  if (rung < 0) return 3;
-  global const int* pairs = rungs[its->first_rung + rung].channel_pairs;
+                                      global const struct TapLevelParams* levels,
+                                      global const struct BlockParams* block, struct BlockPass pass) {
+  if (pass.px_per_mm == 0.0f || block->material == 0) return 0;
+  global const struct MaterialParams* its = materials + block->material - 1;
+  const int level = step_of(its, pass.px_per_mm, pass.block_class).level;
+  if (level < 0) return 3;
+  global const int* pairs = levels[its->first_level + level].channel_pairs;
   return (pairs[0] == 0) + (pairs[1] == 0) + (pairs[2] == 0);
 }
 
-kernel void choose_passes(struct FrameParams f, int cells_per_item, global const struct MaterialParams* materials,
-                          global const struct RungParams* rungs, global const struct CellParams* cells,
-                          global struct CellPasses* passes, global volatile int* counters) {
-  const int cell_y = get_global_id(1);
-  const int first = get_global_id(0) * cells_per_item;
+kernel void choose_passes(struct FrameParams f, int blocks_per_item, global const struct MaterialParams* materials,
+                          global const struct TapLevelParams* levels, global const struct BlockParams* blocks,
+                          global struct BlockPasses* passes, global volatile int* counters) {
+  const int block_y = get_global_id(1);
+  const int first = get_global_id(0) * blocks_per_item;
   int scattered = 0;
   int narrow = 0;
   int flat = 0;
   int smooth = 0;
   int channels = 0;
   int reach = 0;
-  for (int cell_x = first; cell_x < min(first + cells_per_item, f.cells_x); ++cell_x) {
-    const int cell = cell_y * f.cells_x + cell_x;
-    passes[cell].x = pass_over(&f, materials, rungs, cells, cell_x, cell_y, 0);
-    passes[cell].y = pass_over(&f, materials, rungs, cells, cell_x, cell_y, 1);
-    const struct CellPass down = passes[cell].y;
-    reach = max(reach, farthest_tap_of(cells + cell, materials, rungs, down.footprint, down.shape));
-    scattered += cells[cell].scattered;
-    narrow += cells[cell].narrow;
-    channels += cells[cell].scattered * min(channels_left_alone(materials, rungs, cells + cell, passes[cell].x),
-                                            channels_left_alone(materials, rungs, cells + cell, passes[cell].y));
-    const int shape = max(passes[cell].x.shape, passes[cell].y.shape);
-    if (shape == SHAPE_FLAT) flat += cells[cell].scattered;
-    if (shape == SHAPE_SMOOTH) smooth += cells[cell].scattered;
+  for (int block_x = first; block_x < min(first + blocks_per_item, f.blocks_x); ++block_x) {
+    const int block = block_y * f.blocks_x + block_x;
+    passes[block].x = pass_over(&f, materials, levels, blocks, block_x, block_y, 0);
+    passes[block].y = pass_over(&f, materials, levels, blocks, block_x, block_y, 1);
+    const struct BlockPass down = passes[block].y;
+    reach = max(reach, farthest_tap_of(blocks + block, materials, levels, down.px_per_mm, down.block_class));
+    scattered += blocks[block].scattered;
+    narrow += blocks[block].narrow;
+    channels += blocks[block].scattered * min(channels_left_alone(materials, levels, blocks + block, passes[block].x),
+                                              channels_left_alone(materials, levels, blocks + block, passes[block].y));
+    const int block_class = max(passes[block].x.block_class, passes[block].y.block_class);
+    if (block_class == CLASS_FLAT) flat += blocks[block].scattered;
+    if (block_class == CLASS_SMOOTH) smooth += blocks[block].scattered;
   }
   atomic_add(counters + COUNTER_SCATTERED, scattered);
   atomic_add(counters + COUNTER_NARROW, narrow);

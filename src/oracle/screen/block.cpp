@@ -1,95 +1,95 @@
-#include "oracle/screen/cell.hpp"
+#include "oracle/screen/block.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 
-#include "oracle/screen/ladder.hpp"
+#include "oracle/screen/tap_level.hpp"
 
 namespace dermis::oracle {
 
 namespace {
 
-int cells_over(int size_px) { return (size_px + cell_px - 1) / cell_px; }
+int blocks_over(int size_px) { return (size_px + block_px - 1) / block_px; }
 
 /// Two more roundings cover any order of the sum, and factors taken out of it.
 Bounded squared_length(const Tangent& v) { return rounded(v[0] * v[0] + v[1] * v[1] + v[2] * v[2], 2); }
 
 }  // namespace
 
-void Cells::Range::add(Bounded value) {
+void Blocks::Range::add(Bounded value) {
   low_ = std::min(low_, value.value);
   high_ = std::max(high_, value.value);
   error_ = std::max(error_, value.error);
 }
 
-void Cells::Range::add(const Range& other) {
+void Blocks::Range::add(const Range& other) {
   low_ = std::min(low_, other.low_);
   high_ = std::max(high_, other.high_);
   error_ = std::max(error_, other.error_);
 }
 
 // Halving does not round.
-Bounded Cells::Range::middle() const { return low_ <= high_ ? rounded({(low_ + high_) / 2, error_}) : exact(0); }
+Bounded Blocks::Range::middle() const { return low_ <= high_ ? rounded({(low_ + high_) / 2, error_}) : exact(0); }
 
-Bounded Cells::Range::half_range() const { return low_ <= high_ ? rounded({(high_ - low_) / 2, error_}) : exact(0); }
+Bounded Blocks::Range::half_range() const { return low_ <= high_ ? rounded({(high_ - low_) / 2, error_}) : exact(0); }
 
 // The maximum over what surely counts is a device's lower bound, that over what may count the upper.
-void Cells::Largest::add(Bounded value, bool counts, bool unsure) {
+void Blocks::Largest::add(Bounded value, bool counts, bool unsure) {
   if (counts) nominal_ = std::max(nominal_, value.value);
   if (counts && !unsure) low_ = std::max(low_, value.low());
   if (counts || unsure) high_ = std::max(high_, value.high());
 }
 
-Cells::Cells(const Surface& surface, std::span<const Material> materials, bool may_be_flat)
+Blocks::Blocks(const Surface& surface, std::span<const Material> materials, bool may_be_flat)
     : surface_(surface),
       materials_(materials),
       may_be_flat_(may_be_flat),
-      columns_(cells_over(surface.width())),
-      rows_(cells_over(surface.height())),
-      cells_(static_cast<std::size_t>(columns_) * rows_) {
+      columns_(blocks_over(surface.width())),
+      rows_(blocks_over(surface.height())),
+      blocks_(static_cast<std::size_t>(columns_) * rows_) {
   for (int row = 0; row < rows_; ++row) {
     for (int column = 0; column < columns_; ++column) {
-      Cell& cell = cells_[static_cast<std::size_t>(row) * columns_ + column];
-      for_each_pixel(column, row, [&](int x, int y) { add_pixel(cell, x, y); });
+      Block& block = blocks_[static_cast<std::size_t>(row) * columns_ + column];
+      for_each_pixel(column, row, [&](int x, int y) { add_pixel(block, x, y); });
     }
   }
 }
 
-void Cells::add_pixel(Cell& cell, int x, int y) const {
+void Blocks::add_pixel(Block& block, int x, int y) const {
   const SurfacePixel& pixel = surface_.at(x, y);
   if (pixel.material < 0) return;
-  if (pixel.wide) cell.scatters.set(pixel.material);
-  if (pixel.wide && !pixel.wide_unsure) cell.surely_scatters.set(pixel.material);
-  if (pixel.wide || pixel.wide_unsure) cell.perhaps_scatters.set(pixel.material);
-  cell.is_partial = cell.is_partial || pixel.covered < 1;
-  cell.depth_mm.add(pixel.position_mm[2]);
+  if (pixel.wide) block.scatters.set(pixel.material);
+  if (pixel.wide && !pixel.wide_unsure) block.surely_scatters.set(pixel.material);
+  if (pixel.wide || pixel.wide_unsure) block.perhaps_scatters.set(pixel.material);
+  block.is_partial = block.is_partial || pixel.covered < 1;
+  block.depth_mm.add(pixel.position_mm[2]);
   for (const Axis axis : {horizontal, vertical}) {
-    cell.footprint[axis].add(pixel.effective_footprint[axis], pixel.wide, pixel.wide_unsure);
+    block.px_per_mm[axis].add(pixel.effective_px_per_mm[axis], pixel.wide, pixel.wide_unsure);
     const int next_x = axis == horizontal ? x + 1 : x;
     const int next_y = axis == vertical ? y + 1 : y;
-    if (next_x / cell_px != x / cell_px || next_y / cell_px != y / cell_px) continue;
+    if (next_x / block_px != x / block_px || next_y / block_px != y / block_px) continue;
     if (!surface_.shows(pixel.material, next_x, next_y)) continue;
-    cell.step_mm[axis].add(surface_.at(next_x, next_y).position_mm[2] - pixel.position_mm[2]);
+    block.step_mm[axis].add(surface_.at(next_x, next_y).position_mm[2] - pixel.position_mm[2]);
   }
 }
 
-/// The cells within reach.
-struct Cells::Surroundings {
+/// The blocks within reach.
+struct Blocks::Surroundings {
   Range depth_mm;
   std::array<Range, 2> step_mm;
   std::array<int, 2> size_px;  ///< columns and rows of pixels that lie in the frame
   bool is_partial;
 };
 
-Cells::Surroundings Cells::surroundings(Axis axis, int column, int row, const Extent& extent) const {
+Blocks::Surroundings Blocks::surroundings(Axis axis, int column, int row, const Extent& extent) const {
   std::array<int, 2> first{column, row};
   std::array<int, 2> last{column, row};
-  const std::array<int, 2> frame_cells{columns_, rows_};
+  const std::array<int, 2> frame_blocks{columns_, rows_};
   for (const Axis i : {horizontal, vertical}) {
-    const int reach_cells = i == axis ? extent.along_cells : extent.side_cells;
-    first[i] = std::max(first[i] - reach_cells, 0);
-    last[i] = std::min(last[i] + reach_cells, frame_cells[i] - 1);
+    const int reach_blocks = i == axis ? extent.along_blocks : extent.side_blocks;
+    first[i] = std::max(first[i] - reach_blocks, 0);
+    last[i] = std::min(last[i] + reach_blocks, frame_blocks[i] - 1);
   }
   Surroundings all{};
   for (int j = first[vertical]; j <= last[vertical]; ++j) {
@@ -101,30 +101,30 @@ Cells::Surroundings Cells::surroundings(Axis axis, int column, int row, const Ex
   }
   const std::array<int, 2> frame_px{surface_.width(), surface_.height()};
   for (const Axis along : {horizontal, vertical}) {
-    all.size_px[along] = std::min(cell_px * (last[along] + 1), frame_px[along]) - cell_px * first[along];
+    all.size_px[along] = std::min(block_px * (last[along] + 1), frame_px[along]) - block_px * first[along];
   }
   return all;
 }
 
-Cells::Decision Cells::is_at_most(Bounded a, Bounded b) {
+Blocks::Decision Blocks::is_at_most(Bounded a, Bounded b) {
   return {a.value <= b.value, a.high() > b.low() && a.low() <= b.high()};
 }
 
-Cells::Decision Cells::both(Decision a, Decision b) {
+Blocks::Decision Blocks::both(Decision a, Decision b) {
   const bool surely_not = (!a.yes && !a.unsure) || (!b.yes && !b.unsure);
   return {a.yes && b.yes, (a.unsure || b.unsure) && !surely_not};
 }
 
 /// How the position of the surface changes per pixel along a pass.
-struct Cells::Variation {
+struct Blocks::Variation {
   Bounded squared_length;          ///< of T in the middle
   Bounded squared_length_varying;  ///< of dT
 };
 
-Cells::Variation Cells::variation(Axis axis, int column, int row, const ShearChoice& shear, const Range& depth_mm,
-                                  const std::array<Range, 2>& step_mm) const {
+Blocks::Variation Blocks::variation(Axis axis, int column, int row, const ShearChoice& shear, const Range& depth_mm,
+                                    const std::array<Range, 2>& step_mm) const {
   const View& view = surface_.view();
-  const std::array<int, 2> corner_px{cell_px * column, cell_px * row};
+  const std::array<int, 2> corner_px{block_px * column, block_px * row};
   const Bounded side = shear.columns();
   const Range& along_mm = step_mm[axis];
   const Range& across_mm = step_mm[1 - axis];
@@ -133,7 +133,7 @@ Cells::Variation Cells::variation(Axis axis, int column, int row, const ShearCho
   Tangent change;   // T
   Tangent varying;  // dT
   for (const Axis i : {horizontal, vertical}) {
-    const Bounded ray = view.ray(i, corner_px[i] + cell_px / 2.0);
+    const Bounded ray = view.ray(i, corner_px[i] + block_px / 2.0);
     const Bounded pixels = i == axis ? exact(1) : side;
     change[i] = ray * step + pixels * view.size_mm(i, depth_mm.middle());
     varying[i] = absolute(ray) * varying_step + absolute(pixels) * view.growth_mm(i, depth_mm.half_range());
@@ -143,29 +143,29 @@ Cells::Variation Cells::variation(Axis axis, int column, int row, const ShearCho
   return {squared_length(change), squared_length(varying)};
 }
 
-/// In the middle of a cell.
-ShearChoice Cells::shear(int column, int row) const {
+/// In the middle of a block.
+ShearChoice Blocks::shear(int column, int row) const {
   if (!surface_.is_sheared()) return {};
-  const Cell& cell = at(column, row);
+  const Block& block = at(column, row);
   const View& view = surface_.view();
-  const std::array<int, 2> corner_px{cell_px * column, cell_px * row};
+  const std::array<int, 2> corner_px{block_px * column, block_px * row};
   std::array<Tangent, 2> tangents;
   for (const Axis axis : {horizontal, vertical}) {
-    const Bounded step = cell.step_mm[axis].middle();
+    const Bounded step = block.step_mm[axis].middle();
     for (const Axis i : {horizontal, vertical}) {
-      tangents[axis][i] = view.ray(i, corner_px[i] + cell_px / 2.0) * step;
-      if (i == axis) tangents[axis][i] = tangents[axis][i] + view.size_mm(i, cell.depth_mm.middle());
+      tangents[axis][i] = view.ray(i, corner_px[i] + block_px / 2.0) * step;
+      if (i == axis) tangents[axis][i] = tangents[axis][i] + view.size_mm(i, block.depth_mm.middle());
     }
     tangents[axis][2] = step;
   }
   return whole_shear(shear_between(tangents[horizontal], tangents[vertical]));
 }
 
-void Cells::add_kinds(Axis axis, int column, int row, const Extent& extent, std::vector<CellKind>& kinds) const {
-  const Cell& cell = at(column, row);
+void Blocks::add_kinds(Axis axis, int column, int row, const Extent& extent, std::vector<BlockClass>& kinds) const {
+  const Block& block = at(column, row);
   const Surroundings near = surroundings(axis, column, row, extent);
   if (near.is_partial) {
-    kinds.push_back({Shape::curved, cell.footprint[axis].bounded(), {}});
+    kinds.push_back({Shape::curved, block.px_per_mm[axis].bounded(), {}});
     return;
   }
   const Variation within_reach = variation(axis, column, row, extent.shear, near.depth_mm, near.step_mm);
@@ -192,11 +192,11 @@ void Cells::add_kinds(Axis axis, int column, int row, const Extent& extent, std:
         kinds.push_back(
             {shape,
              exact(1) /
-                 square_root(variation(axis, column, row, extent.shear, cell.depth_mm, cell.step_mm).squared_length),
+                 square_root(variation(axis, column, row, extent.shear, block.depth_mm, block.step_mm).squared_length),
              extent.shear});
         break;
       case Shape::curved:
-        kinds.push_back({shape, cell.footprint[axis].bounded(), {}});
+        kinds.push_back({shape, block.px_per_mm[axis].bounded(), {}});
     }
   };
   const Shape nominal = flat.yes ? Shape::flat : smooth.yes ? Shape::smooth : Shape::curved;
@@ -207,32 +207,32 @@ void Cells::add_kinds(Axis axis, int column, int row, const Extent& extent, std:
   if (smooth.unsure && nominal != Shape::curved) add(Shape::curved);
 }
 
-/// An eighth more than the farthest tap of the materials that scatter, for the largest footprint.
-Cells::Reach Cells::reach(Axis axis, const Cell& cell) const {
-  const Bounded footprint = cell.footprint[axis].bounded();
+/// An eighth more than the farthest tap of the materials that scatter, for the largest px_per_mm.
+Blocks::Reach Blocks::reach(Axis axis, const Block& block) const {
+  const Bounded px_per_mm = block.px_per_mm[axis].bounded();
   Reach reach{};
   for (std::size_t m = 0; m < materials_.size(); ++m) {
-    if (!cell.perhaps_scatters[m]) continue;
+    if (!block.perhaps_scatters[m]) continue;
     const Taps& taps = materials_[m].taps;
-    const Bounded radius_px = footprint * as_float(taps.radius_mm);
-    if (cell.scatters[m]) {
-      reach.nominal_px = std::max(reach.nominal_px, farthest_px(ladder_step(radius_px.value, false, taps), taps));
+    const Bounded radius_px = px_per_mm * as_float(taps.radius_mm);
+    if (block.scatters[m]) {
+      reach.nominal_px = std::max(reach.nominal_px, farthest_px(level_step(radius_px.value, false, taps), taps));
     }
     int least_px = std::numeric_limits<int>::max();
-    for (int step = ladder_step(radius_px.low(), false, taps); step <= ladder_step(radius_px.high(), false, taps);
+    for (int step = level_step(radius_px.low(), false, taps); step <= level_step(radius_px.high(), false, taps);
          ++step) {
       const int its_px = farthest_px(step, taps);
       least_px = std::min(least_px, its_px);
       reach.most_px = std::max(reach.most_px, its_px);
     }
-    if (cell.surely_scatters[m]) reach.least_px = std::max(reach.least_px, least_px);
+    if (block.surely_scatters[m]) reach.least_px = std::max(reach.least_px, least_px);
   }
   for (int* px : {&reach.nominal_px, &reach.least_px, &reach.most_px}) *px += *px / 8;
   return reach;
 }
 
-/// What lies within r pixels lies in the ceil(r / 16) cells to either side.
-std::vector<Cells::Extent> Cells::extents(Axis axis, int column, int row) const {
+/// What lies within r pixels lies in the ceil(r / 16) blocks to either side.
+std::vector<Blocks::Extent> Blocks::extents(Axis axis, int column, int row) const {
   const Reach reach_px = reach(axis, at(column, row));
   const ShearChoice shears = axis == vertical ? shear(column, row) : ShearChoice{};
   const int frame_px = std::max(surface_.width(), surface_.height());
@@ -244,7 +244,7 @@ std::vector<Cells::Extent> Cells::extents(Axis axis, int column, int row) const 
     along_px = std::min(along_px, frame_px);
     // A shear that moves no tap is none.
     for (const int side : sides_px(shears.magnitude(), along_px)) {
-      add({cells_over(along_px), cells_over(side), side == 0 ? ShearChoice{} : shears});
+      add({blocks_over(along_px), blocks_over(side), side == 0 ? ShearChoice{} : shears});
     }
   };
   add_sides(reach_px.nominal_px);
@@ -252,10 +252,10 @@ std::vector<Cells::Extent> Cells::extents(Axis axis, int column, int row) const 
   return all;
 }
 
-std::vector<CellKind> Cells::kinds(Axis axis, int column, int row) const {
-  const Cell& cell = at(column, row);
-  if (!may_be_flat_) return {{Shape::curved, cell.footprint[axis].bounded(), {}}};
-  std::vector<CellKind> kinds;
+std::vector<BlockClass> Blocks::kinds(Axis axis, int column, int row) const {
+  const Block& block = at(column, row);
+  if (!may_be_flat_) return {{Shape::curved, block.px_per_mm[axis].bounded(), {}}};
+  std::vector<BlockClass> kinds;
   for (const Extent& extent : extents(axis, column, row)) add_kinds(axis, column, row, extent, kinds);
   return kinds;
 }

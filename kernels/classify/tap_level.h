@@ -1,0 +1,28 @@
+// Which level of its level table a material takes: Taps in taps.hpp.
+#include "params.h"
+
+typedef struct {
+  int level;  // -1 if the kernel radius is below half a pixel
+  int part;   // of the level, on a flat block
+} Step;
+
+// Steps of 1/16 octave in the bits of a float; on a flat block the nearest of the parts of those.
+static inline Step step_of(global const struct MaterialParams* its, float px_per_mm, int block_class) {
+  const float radius_px = px_per_mm * its->radius_mm;
+  const int bits = as_int(radius_px) - as_int(0.5f) + (block_class == CLASS_FLAT ? 1 << 15 : 0);
+  const int level = min(bits >> 19, its->levels - 1);
+  const Step step = {radius_px >= 0.5f ? level : -1, min((bits - (level << 19)) >> 16, LEVEL_PARTS - 1)};
+  return step;
+}
+
+// How far its taps go, px.
+static inline int last_offset_of(global const struct MaterialParams* its, global const struct TapLevelParams* levels,
+                                 float px_per_mm, int block_class) {
+  const int level = step_of(its, px_per_mm, block_class).level;
+  return level >= 0 ? levels[its->first_level + level].last_offset_px : 0;
+}
+
+// Pairs in which all channels have a weight.
+static inline int full_pairs_of(global const struct TapLevelParams* level) {
+  return min(min(level->channel_pairs[0], level->channel_pairs[1]), level->channel_pairs[2]);
+}
