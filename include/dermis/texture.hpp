@@ -11,6 +11,7 @@
 
 #include "dermis/device.hpp"
 #include "dermis/frame.hpp"
+#include "dermis/names.hpp"
 #include "dermis/profile.hpp"
 
 namespace dermis {
@@ -52,6 +53,10 @@ enum class TextureMethod {
   gaussians,  ///< a sum of six Gaussians, each blur made from the last: see GaussianChain
   recursive,  ///< exponentials, in a time that does not depend on their length: see Recursion
 };
+
+template <>
+inline constexpr std::array<Named<TextureMethod>, 2> names<TextureMethod> = {
+    {{TextureMethod::gaussians, "gaussians"}, {TextureMethod::recursive, "recursive"}}};
 
 struct TextureOptions {
   TextureMethod method = TextureMethod::gaussians;

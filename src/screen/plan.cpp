@@ -159,16 +159,20 @@ void Event::wait() const {
   with_device_errors([&] { cl::Event(event_, true).wait(); });
 }
 
-Plan::Plan(const Device& device, std::vector<Material> materials, const FrameDescription& frames,
-           const Options& options) {
-  check_options(options);
-  check_materials(materials, frames.material, frames.albedo);
-  check_albedo_mix(frames, options);
-  check_designs(materials, options);
-  check_disc(options.disc);
+Plan::Plan(const Device& device, std::vector<Material> given_materials, const FrameDescription& frames,
+           const Options& given_options) {
+  check_options(given_options);
+  check_materials(given_materials, frames.material, frames.albedo);
+  check_albedo_mix(frames, given_options);
+  check_designs(given_materials, given_options);
+  check_disc(given_options.disc);
   auto state = std::make_unique<State>(device);
   state->description = frames;
-  state->options = options;
+  ChosenTaps choice = choose_taps(std::move(given_materials), given_options);
+  state->options = std::move(choice.options);
+  state->chosen = std::move(choice.materials);
+  const Options& options = state->options;
+  const std::vector<Material>& materials = state->chosen;
   state->has_pixel_width = frames.mask || any_follows_albedo(materials);
   state->is_sheared = frames.depth && options.sheared && options.jitter == 0;
   state->item_is_pixel = device.info().type == "GPU";

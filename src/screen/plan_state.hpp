@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "dermis/plan.hpp"
 #include "opencl/device.hpp"
@@ -16,8 +17,9 @@ struct Plan::State {
   Device device;
   std::uint64_t number;  ///< no other plan of the process has it
   FrameDescription description;
-  Options options;
-  std::string build_options;  ///< that all kernels share
+  Options options;               ///< as chosen, without a quality and a tolerance
+  std::vector<Material> chosen;  ///< with designs of their own
+  std::string build_options;     ///< that all kernels share
   cl::Program classify_program;
   cl::Program program;
   cl::Buffer materials;
