@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "dermis/taps.hpp"
+#include "dermis/tap_tables.hpp"
 #include "oracle/screen/block.hpp"
 
 namespace dermis::oracle {

@@ -1,7 +1,7 @@
 /// The level table of levels. See Taps.
 #pragma once
 
-#include "dermis/taps.hpp"
+#include "dermis/tap_tables.hpp"
 
 namespace dermis::oracle {
 
