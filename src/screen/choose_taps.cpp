@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "dermis/error.hpp"
+#include "dermis/tap_tables.hpp"
 #include "opencl/device_cache.hpp"
 #include "screen/plan_state.hpp"
 #include "taps/check_design.hpp"

@@ -5,22 +5,12 @@
 #include "arguments/number_argument.hpp"
 
 namespace dermis::program {
-namespace {
-
-std::string list_of_roles() {
-  std::vector<std::string_view> names;
-  for (const exr::Role role : exr::all_roles) names.push_back(exr::name_of(role));
-  const std::string_view last = names.back();
-  names.pop_back();
-  return fmt::format("{} or {}", fmt::join(names, ", "), last);
-}
-
-}  // namespace
 
 void add_role_arguments(CLI::App& app, PictureArguments& arguments) {
   app.add_option("--role", arguments.roles,
-                 fmt::format("take {} from these channels (1 or 3 names with commas, or one prefix; + adds); repeatable",
-                             list_of_roles()))
+                 fmt::format("take a role ({}) from these channels (1 or 3 names with commas, or one prefix; + adds); "
+                             "repeatable",
+                             exr::role_names()))
       ->allow_extra_args(false)
       ->type_name("ROLE=CHANNELS");
   app.add_option("--layer", arguments.layer, "the view layer, if there are several; else the first")->type_name("NAME");
