@@ -1,7 +1,7 @@
 /// The choice of a tap level by the kernel's radius. See Taps.
 #pragma once
 
-#include "dermis/taps.hpp"
+#include "dermis/tap_tables.hpp"
 
 namespace dermis::oracle {
 

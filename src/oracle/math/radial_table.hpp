@@ -1,7 +1,7 @@
 /// Reads a RadialTable.
 #pragma once
 
-#include "dermis/taps.hpp"
+#include "dermis/tap_tables.hpp"
 #include "oracle/math/rounding.hpp"
 
 namespace dermis::oracle {

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "dermis/taps.hpp"
+#include "dermis/tap_tables.hpp"
 #include "oracle/classify/block.hpp"
 
 namespace dermis::oracle {

@@ -4,7 +4,7 @@
 #include <array>
 #include <cstddef>
 
-#include "dermis/taps.hpp"
+#include "dermis/tap_tables.hpp"
 #include "oracle/frame/surface.hpp"
 #include "oracle/math/rounding.hpp"
 #include "oracle/separable/choice.hpp"

@@ -7,7 +7,7 @@
 #include <functional>
 #include <vector>
 
-#include "dermis/taps.hpp"
+#include "dermis/tap_tables.hpp"
 
 /// The same in all channels.
 inline std::array<float, 3> grey(double value) {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "dermis/oracle/reference.hpp"
-#include "dermis/taps.hpp"
+#include "dermis/tap_tables.hpp"
 #include "oracle/support/made_table.hpp"
 
 /// Light of a Gaussian within |x| < r.

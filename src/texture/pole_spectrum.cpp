@@ -1,9 +1,9 @@
-#include "texture/pole_fit.hpp"
+#include "texture/pole_spectrum.hpp"
 
 #include <cmath>
 #include <complex>
 
-#include "taps/placement/least_squares.hpp"
+#include "taps/model/least_squares.hpp"
 
 namespace dermis {
 

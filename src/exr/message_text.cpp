@@ -1,4 +1,4 @@
-#include "exr/text.hpp"
+#include "exr/message_text.hpp"
 
 #include <algorithm>
 
@@ -32,9 +32,7 @@ std::string escaped(std::string_view text) {
     }
     before = c;
   }
-  if (text.size() > longest_text) {
-    out += "...";
-  }
+  if (text.size() > longest_text) out += "...";
   return out;
 }
 
@@ -44,9 +42,7 @@ std::string channel_list(const Picture& picture) {
   for (const Channel& channel : channels.first(std::min(channels.size(), most_names))) {
     out += (out.empty() ? "" : ", ") + escaped(channel.name);
   }
-  if (channels.size() > most_names) {
-    out += " and " + std::to_string(channels.size() - most_names) + " more";
-  }
+  if (channels.size() > most_names) out += " and " + std::to_string(channels.size() - most_names) + " more";
   return out.empty() ? "no channels" : out;
 }
 

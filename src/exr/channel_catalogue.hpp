@@ -16,9 +16,6 @@ namespace dermis::exr {
 using Endings = std::array<std::string_view, 3>;
 inline constexpr std::array<Endings, 2> triple_endings = {{{"R", "G", "B"}, {"X", "Y", "Z"}}};
 
-/// How many channels a group of a role has.
-std::size_t values_of(Role role);
-
 /// "prefix.ending", without the dot if either is empty.
 std::string with_dot(std::string_view prefix, std::string_view ending);
 

@@ -1,4 +1,4 @@
-#include "taps/placement/lattice.hpp"
+#include "taps/prediction/lattice_waves.hpp"
 
 #include <algorithm>
 #include <cmath>

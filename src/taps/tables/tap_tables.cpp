@@ -1,4 +1,4 @@
-#include "dermis/taps.hpp"
+#include "dermis/tap_tables.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -7,8 +7,8 @@
 
 #include "taps/check_design.hpp"
 #include "taps/designed_taps.hpp"
-#include "taps/placement/quanta.hpp"
 #include "taps/tables/plane_weights.hpp"
+#include "taps/tables/quanta.hpp"
 #include "taps/tables/radial_table.hpp"
 #include "taps/tap_budget.hpp"
 
@@ -42,7 +42,7 @@ Term make_term(const Profile& profile, const ModelTerm& model, double radius_mm)
   return term;
 }
 
-/// Surface that a pair stands for on one side: half the way to its neighbours.
+/// The length of surface, px, that a pair stands for on one side: it ends half the way to each neighbour.
 double length_px(const std::vector<double>& offsets_px, std::size_t i) {
   const double before = i == 0 ? 0 : offsets_px[i - 1];
   const double after = i + 1 < offsets_px.size() ? offsets_px[i + 1] : 2 * offsets_px[i] - before;
@@ -51,8 +51,8 @@ double length_px(const std::vector<double>& offsets_px, std::size_t i) {
 
 /// Makes a tap of one weight on a plane follow the term's f: a length times f. Where f has all but vanished at the tap
 /// it says nothing, and the weight is left out. A correction changes its sign, and near there f says little about the
-/// weight: it has a length no longer than is sensible, and the rest as a share of the weight in the first term, which
-/// falls with distance too.
+/// weight: the tap has a length no longer than is sensible, and the rest of the weight is a share of the weight in the
+/// first term, which falls with distance too.
 TapWeight follow(const std::array<double, 3>& weights, const std::array<double, 3>& densities,
                  const std::array<double, 3>& first_weights, double its_length_mm, bool normalised) {
   constexpr double longest_of_correction = 4;
@@ -63,7 +63,7 @@ TapWeight follow(const std::array<double, 3>& weights, const std::array<double, 
     if (densities[c] == 0) continue;
     double length_mm = weights[c] / densities[c];
     if (normalised) {
-      // Both may be nothing but rounding, of either sign.
+      // Weight and density may be nothing but rounding, of either sign.
       if (!(length_mm >= 0 && length_mm < longest * its_length_mm)) length_mm = 0;
     } else {
       length_mm = std::clamp(length_mm, 0.0, longest_of_correction * its_length_mm);
@@ -77,7 +77,7 @@ TapWeight follow(const std::array<double, 3>& weights, const std::array<double, 
   return result;
 }
 
-/// `step`: between levels, as a share of the px_per_mm.
+/// `step`: the difference to the px_per_mm of the next level, as a share of this one's.
 TapLevel make_level(const SizedTaps& taps, const std::vector<Term>& terms, double px_per_mm, double step) {
   TapLevel level{static_cast<float>(px_per_mm), static_cast<float>(taps.centre_half_width_px), {}, {}, {}, {}, {}, {}};
   const double centre_mm = level.centre_half_width_px / px_per_mm;
@@ -119,7 +119,7 @@ TapLevel make_level(const SizedTaps& taps, const std::vector<Term>& terms, doubl
   return level;
 }
 
-/// Leaves a channel alone whose own kernel is narrower than half a pixel.
+/// Takes a channel whose own kernel is narrower than half a pixel out of a level, but for its centre.
 void leave_out(TapLevel& level, const std::vector<Term>& terms, int c) {
   for (TapWeight& weight : level.weights) weight.length_mm[c] = weight.share[c] = 0;
   for (std::size_t at = 0; at < level.stretch_weights.size(); ++at) {
@@ -130,7 +130,7 @@ void leave_out(TapLevel& level, const std::vector<Term>& terms, int c) {
   }
 }
 
-/// The same taps for pixels half the size.
+/// The level's taps for pixels half the size.
 TapLevel spread(TapLevel level) {
   level.px_per_mm *= 2;
   level.centre_half_width_px *= 2;

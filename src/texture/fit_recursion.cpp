@@ -5,11 +5,11 @@
 
 #include "dermis/error.hpp"
 #include "dermis/texture.hpp"
+#include "taps/model/least_squares.hpp"
 #include "taps/model/plane_spectrum.hpp"
 #include "taps/model/separable_model.hpp"
-#include "taps/placement/least_squares.hpp"
 #include "taps/prediction/expected_error.hpp"
-#include "texture/pole_fit.hpp"
+#include "texture/pole_spectrum.hpp"
 
 namespace dermis {
 
@@ -26,7 +26,7 @@ VectorXd spectrum_of(const TermFunction& f, const VectorXd& marginal, const Vect
   return sum;
 }
 
-/// What the error of a function along one axis counts for, if it is the same along the other.
+/// The weight of a function's error along one axis, if the function along the other axis is `f`.
 VectorXd axis_weight(const PlaneSpectrum& plane, const VectorXd& f) {
   const MatrixXd weighted = plane.weight * f.cwiseAbs2().asDiagonal() * plane.weight.transpose();
   return weighted.diagonal().cwiseSqrt();

@@ -32,7 +32,7 @@ MatrixXd lights(const std::vector<Gaussian>& gaussians, double pixel_mm) {
 
 }  // namespace
 
-std::vector<ModelTerm> decompose(const Profile& profile, int rank) {
+std::vector<ModelTerm> fit_svd(const Profile& profile, int rank) {
   std::vector<ModelTerm> terms(rank);
   for (int c = 0; c < 3; ++c) {
     // The profile is a sum of products w G(x) G(y), so its matrix on pixels is G w G^T, of the rank of the sum.

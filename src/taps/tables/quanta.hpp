@@ -5,13 +5,13 @@
 
 namespace dermis {
 
-/// In whole multiples of 2^-24, which float32 adds without rounding.
+/// Rounds to whole multiples of 2^-24, which float32 adds without rounding.
 inline double in_quanta(double weight) {
   constexpr double quantum = 0x1p-24;
   return std::round(weight / quantum) * quantum;
 }
 
-/// In whole multiples of 2^-20, which float32 adds without rounding up to a sum of 16.
+/// Rounds to whole multiples of 2^-20, which float32 adds without rounding up to a sum of 16.
 inline double in_coarse_quanta(double weight) {
   constexpr double quantum = 0x1p-20;
   return std::round(weight / quantum) * quantum;

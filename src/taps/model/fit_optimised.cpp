@@ -1,4 +1,4 @@
-// The optimised models: least error on natural images.
+// The optimised models, whose error on natural images is least.
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
@@ -16,7 +16,7 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// The profile's spectrum on pairs of frequencies.
+/// One channel's fit on pairs of frequencies.
 struct SpectralFit {
   PlaneSpectrum plane;
   CorrectionBasis basis;
@@ -50,7 +50,7 @@ void add_corrections(SpectralFit& spectral, int count) {
   const auto basis_solver = (root.asDiagonal() * fit.basis.bottomRows(n)).eval().colPivHouseholderQr();
   for (int k = 0; k < count; ++k) {
     const double value = eigen.eigenvalues()[order[k]];
-    // Of a Gaussian the marginals' product misses nothing.
+    // The marginals' product misses nothing of a Gaussian.
     constexpr double negligible = 1e-9;
     if (std::abs(value) < negligible) {
       fit.products.push_back({0, VectorXd::Zero(n + 1), VectorXd()});
@@ -82,7 +82,7 @@ void add_floor(SpectralFit& spectral, const Profile& profile, int channel) {
 
 }  // namespace
 
-std::vector<ModelTerm> fit_spectrum(const Profile& profile, int rank, bool non_negative) {
+std::vector<ModelTerm> fit_optimised(const Profile& profile, int rank, bool non_negative) {
   std::vector<ModelTerm> terms(rank);
   for (int c = 0; c < 3; ++c) {
     SpectralFit spectral(profile, c);

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "dermis/exr.hpp"
-#include "exr/catalogue.hpp"
+#include "exr/channel_catalogue.hpp"
 
 namespace dermis::exr {
 

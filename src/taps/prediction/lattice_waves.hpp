@@ -1,4 +1,4 @@
-// Functions on the pixels of a line: integrated over each pixel, and what that does to a frequency.
+// The frequency response of functions that are integrated over each pixel of a line.
 #pragma once
 
 #include <Eigen/Core>
@@ -8,7 +8,7 @@
 
 namespace dermis {
 
-/// What Gaussians on pixels need of angular frequencies u, rad per px, whatever their width.
+/// Angular frequencies u, rad per px, with all that Gaussians of any width need of them.
 class LatticeWaves {
  public:
   explicit LatticeWaves(const Eigen::VectorXd& u);
@@ -21,9 +21,9 @@ class LatticeWaves {
   Eigen::MatrixXd of_gaussians(const std::vector<Gaussian>& gaussians, double pixel_mm) const;
 
  private:
-  Eigen::MatrixXd cosines_;          ///< of u i, i = 0, 1, ...
+  Eigen::MatrixXd cosines_;          ///< cos(u i), i = 0, 1, ...
   Eigen::MatrixXd squared_images_;   ///< (u + 2 pi m)^2, m = -1, 0, 1
-  Eigen::MatrixXd pixel_responses_;  ///< there
+  Eigen::MatrixXd pixel_responses_;  ///< at these frequencies
 };
 
 }  // namespace dermis

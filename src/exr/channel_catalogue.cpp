@@ -1,11 +1,11 @@
-#include "exr/catalogue.hpp"
+#include "exr/channel_catalogue.hpp"
 
 #include <algorithm>
 #include <functional>
 #include <numeric>
 #include <utility>
 
-#include "exr/text.hpp"
+#include "exr/message_text.hpp"
 
 namespace dermis::exr {
 namespace {
@@ -14,24 +14,14 @@ constexpr std::array<std::string_view, 6> single_endings = {"Z", "X", "V", "Y", 
 
 }  // namespace
 
-std::size_t values_of(Role role) {
-  constexpr std::array single = {Role::depth,     Role::material,  Role::mask,     Role::matte,
-                                 Role::stretch_u, Role::stretch_v, Role::thickness};
-  return std::find(single.begin(), single.end(), role) != single.end() ? 1 : 3;
-}
-
 std::string with_dot(std::string_view prefix, std::string_view ending) {
   std::string out(prefix);
-  if (!prefix.empty() && !ending.empty()) {
-    out += '.';
-  }
+  if (!prefix.empty() && !ending.empty()) out += '.';
   return out += ending;
 }
 
 Catalogue::Catalogue(const Picture& picture) : picture_(picture) {
-  for (const Channel& channel : picture.channels()) {
-    lower_names_.push_back(lower(channel.name));
-  }
+  for (const Channel& channel : picture.channels()) lower_names_.push_back(lower(channel.name));
 }
 
 std::string Catalogue::all() const { return channel_list(picture_); }
@@ -41,9 +31,7 @@ std::string Catalogue::find(std::string_view name) const {
   std::string best;
   std::ptrdiff_t best_alike = -1;
   for (std::size_t i = 0; i < lower_names_.size(); ++i) {
-    if (lower_names_[i] != wanted) {
-      continue;
-    }
+    if (lower_names_[i] != wanted) continue;
     const std::string& candidate = name_at(i);
     const auto alike = std::inner_product(name.begin(), name.end(), candidate.begin(), std::ptrdiff_t{0}, std::plus<>(),
                                           std::equal_to<>());
@@ -59,22 +47,16 @@ std::vector<std::string> Catalogue::triple(std::string_view prefix, std::span<co
   for (const Endings& endings : choices) {
     std::vector<std::string> found;
     for (const std::string_view ending : endings) {
-      if (std::string name = find(with_dot(prefix, ending)); !name.empty()) {
-        found.push_back(std::move(name));
-      }
+      if (std::string name = find(with_dot(prefix, ending)); !name.empty()) found.push_back(std::move(name));
     }
-    if (found.size() == endings.size()) {
-      return found;
-    }
+    if (found.size() == endings.size()) return found;
   }
   return {};
 }
 
 std::vector<std::string> Catalogue::single(std::string_view prefix) const {
   for (const std::string_view ending : single_endings) {
-    if (std::string name = find(with_dot(prefix, ending)); !name.empty()) {
-      return {std::move(name)};
-    }
+    if (std::string name = find(with_dot(prefix, ending)); !name.empty()) return {std::move(name)};
   }
   return {};
 }

@@ -1,4 +1,4 @@
-// What fits that leave false points out share.
+// Parts that fits which leave false points out have in common.
 #pragma once
 
 #include <Eigen/Core>

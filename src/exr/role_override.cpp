@@ -1,10 +1,10 @@
-#include "exr/override.hpp"
+#include "exr/role_override.hpp"
 
 #include <algorithm>
 #include <utility>
 
 #include "dermis/error.hpp"
-#include "exr/text.hpp"
+#include "exr/message_text.hpp"
 
 namespace dermis::exr {
 namespace {
@@ -29,42 +29,28 @@ std::vector<std::string_view> split(std::string_view text, char separator) {
   throw Error(ErrorCode::usage, "role", '"' + escaped(text) + '"', wanted);
 }
 
-std::string list_of_roles() {
-  std::string out;
-  for (const Role role : all_roles) {
-    out += (out.empty() ? "" : ", ") + std::string(name_of(role));
-  }
-  return out;
-}
-
 }  // namespace
 
 Override::Override(std::string_view text) : text_(text) {
   const std::size_t equals = text.find('=');
-  if (equals == std::string_view::npos) {
-    malformed(text, "role=channels");
-  }
+  if (equals == std::string_view::npos) malformed(text, "role=channels");
   const std::string name = lower(trimmed(text.substr(0, equals)));
   const auto* const it =
-      std::find_if(all_roles.begin(), all_roles.end(), [&name](Role r) { return name_of(r) == name; });
-  if (it == all_roles.end()) {
-    malformed(text, "one of " + list_of_roles() + " before the =");
-  }
-  role_ = *it;
+      std::find_if(role_table.begin(), role_table.end(), [&](const RoleInfo& info) { return info.name == name; });
+  if (it == role_table.end()) malformed(text, "one of " + role_names() + " before the =");
+  role_ = it->role;
   channels_ = text.substr(equals + 1);
 }
 
 ChannelSum Override::resolve(const Catalogue& catalogue) const {
   ChannelSum sum;
-  for (const std::string_view group : split(channels_, '+')) {
-    sum.push_back(resolve_group(catalogue, split(group, ',')));
-  }
+  for (const std::string_view group : split(channels_, '+')) sum.push_back(resolve_group(catalogue, split(group, ',')));
   return sum;
 }
 
 std::vector<std::string> Override::resolve_group(const Catalogue& catalogue,
                                                  const std::vector<std::string_view>& names) const {
-  const std::size_t values = values_of(role_);
+  const std::size_t values = info_of(role_).values;
   const bool empty = std::any_of(names.begin(), names.end(), [](std::string_view name) { return name.empty(); });
   if (empty || (names.size() != 1 && names.size() != values)) {
     malformed(text_, values == 3 ? "three channels, or one prefix" : "one channel");
@@ -73,9 +59,7 @@ std::vector<std::string> Override::resolve_group(const Catalogue& catalogue,
     return {existing(catalogue, names[0]), existing(catalogue, names[1]), existing(catalogue, names[2])};
   }
   if (values == 1) {
-    if (std::string name = catalogue.find(names[0]); !name.empty()) {
-      return {std::move(name)};
-    }
+    if (std::string name = catalogue.find(names[0]); !name.empty()) return {std::move(name)};
   }
   std::vector<std::string> group =
       values == 3 ? catalogue.triple(names[0], triple_endings) : catalogue.single(names[0]);
