@@ -32,8 +32,8 @@ struct Material {
   /// Size of a pixel on the surface, mm, at the median depth of its pixels: what taps with a tolerance are chosen for.
   /// 1e-12..1e12; 0: not known, so that a kernel radius of 64 pixels is assumed.
   double pixel_mm = 0;
-  /// The same at the nearest depth: no taps are placed for kernels that are wider there than twice their radius, which
-  /// saves time and changes no light. 0: not known.
+  /// Size of a pixel at the nearest depth, mm: no taps are placed for kernels that are wider there than twice their
+  /// radius, which saves time and changes no light. 0: not known.
   double finest_pixel_mm = 0;
 
   bool operator==(const Material&) const = default;
@@ -49,7 +49,7 @@ template <>
 inline constexpr std::array<Named<Method>, 3> word_table<Method> = {
     {{Method::separable, "separable"}, {Method::exact, "exact"}, {Method::disc, "disc"}}};
 
-/// How Method::disc samples the surface integral (Golubev 2018). The distances of samples from a pixel are those within
+/// Method::disc samples the surface integral (Golubev 2018). The distances of samples from a pixel are those within
 /// which even shares of the widest channel's light leave, their directions turn by the golden angle from each to the
 /// next, and by a random angle per pixel. A sample weighs R(distance on the surface) / density, times how much more
 /// surface than disc there is under it, over the sum of weights; what lies on other materials is left out. The pixel's
@@ -74,7 +74,7 @@ struct DiscOptions {
   bool operator==(const DiscOptions&) const = default;
 };
 
-/// What Frame::light holds.
+/// The quantity that Frame::light holds.
 enum class Lighting {
   raw,  ///< irradiance: the albedo is not in it
   lit,  ///< irradiance times albedo; where an albedo is below 1e-4 the irradiance counts as 0
@@ -84,7 +84,7 @@ template <>
 inline constexpr std::array<Named<Lighting>, 2> word_table<Lighting> = {
     {{Lighting::raw, "raw"}, {Lighting::lit, "lit"}}};
 
-/// What becomes of a pixel whose light or albedo is not finite. It never gives light to another.
+/// The fate of a pixel whose light or albedo is not finite. It never gives light to another.
 enum class BadPixels {
   keep,   ///< it is left as it is
   zero,   ///< its outputs are 0
@@ -95,14 +95,15 @@ template <>
 inline constexpr std::array<Named<BadPixels>, 3> word_table<BadPixels> = {
     {{BadPixels::keep, "keep"}, {BadPixels::zero, "zero"}, {BadPixels::error, "error"}}};
 
-/// What a plan computes. With a quality or a tolerance, of which there is one at most and only with the separable
+/// The choices of a plan. With a quality or a tolerance, of which there is one at most and only with the separable
 /// method, every material gets as few taps as that takes: see choose_taps.
 struct Options {
   Method method = Method::separable;
   std::optional<Quality> quality = {};
   /// Predicted error to be content with, below 1, as a number; if no taps are that good, the method is exact. 0: none.
   double tolerance = 0;
-  /// Of every material that does not have its own. Of these, a quality or a tolerance takes neither rank nor count.
+  /// The design of every material that does not have its own. A quality or a tolerance takes neither rank nor count
+  /// from it.
   TapsDesign taps = {.rank = 2};
   DiscOptions disc = {};  ///< of Method::disc, which has no taps
   /// The vertical pass crosses the horizontal one at a right angle on the surface instead of on the screen: see Taps.
@@ -122,7 +123,7 @@ struct Options {
   bool operator==(const Options&) const = default;
 };
 
-/// What becomes of materials and options with a quality, a tolerance or sizes of pixels.
+/// Materials and options once a quality, a tolerance and sizes of pixels have chosen their taps.
 struct ChosenTaps {
   std::vector<Material> materials;  ///< with designs of their own, and without sizes of pixels
   Options options;                  ///< without a quality and a tolerance
@@ -163,7 +164,7 @@ struct FrameDescription {
   bool operator==(const FrameDescription&) const = default;
 };
 
-/// What became of a tile.
+/// The fate of a tile.
 enum class TileKind : std::uint8_t {
   without_material,  ///< skipped: no pixel has a material
   narrow,            ///< skipped: every kernel is narrower than half a pixel
@@ -186,7 +187,7 @@ inline constexpr std::array<Named<TileKind>, 8> word_table<TileKind> = {
      {TileKind::curved, "curved"},
      {TileKind::reused, "reused"}}};
 
-/// What became of each tile, row by row.
+/// The fate of each tile, row by row.
 struct TileMap {
   int tile_width = 0;   ///< px
   int tile_height = 0;  ///< px; fitted to what scatters and how far, unless the options say it
@@ -195,7 +196,7 @@ struct TileMap {
   std::vector<TileKind> kinds;
 };
 
-/// What one run did. Times are of the device, in milliseconds.
+/// The work of one run. Times are of the device, in milliseconds.
 struct Stats {
   double prepare_ms = 0;   ///< memory, images bound to the device
   double classify_ms = 0;  ///< materials and shape of blocks
@@ -240,7 +241,7 @@ class Event {
   cl_event event_;
 };
 
-/// What one frame of a sequence leaves for the next one: the light after scattering, 12 bytes per pixel, and a hash of
+/// One frame of a sequence leaves this for the next one: the light after scattering, 12 bytes per pixel, and a hash of
 /// the inputs of each 16 x 16 pixels. For one thread at a time.
 class Reuse {
  public:
@@ -273,7 +274,7 @@ class Plan {
   /// Returns without writing anything if `progress` returned false.
   Stats run(const Frame& frame, const Progress& progress = {}) const;
 
-  /// The same for the next frame of a sequence: tiles of which nothing within reach has changed since the last run with
+  /// Filters the next frame of a sequence: tiles of which nothing within reach has changed since the last run with
   /// `reuse` take the light of that run, with the same bits. All is computed if there was none, if it was of another
   /// plan, size, camera or scale or failed, and always if the method is not separable or the device works pixel by
   /// pixel. Bad pixels are counted, and refused, in tiles that are filtered.

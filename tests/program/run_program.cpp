@@ -12,7 +12,7 @@
 
 namespace {
 
-/// For the shell.
+/// Quotes a word for the shell.
 std::string quoted(const std::string& text) {
   std::string result;
   for (const char c : text) {
