@@ -13,13 +13,12 @@ namespace dermis::program {
 namespace {
 
 std::string header(const std::filesystem::path& output, bool svg, const FigureSize& size) {
-  return fmt::format("set terminal {} size {},{}\nset output {}\n", svg ? "svg background 'white'" : "pngcairo",
-                     size.width_px, size.height_px, script_string(output.string()));
+  return fmt::format("set terminal {} size {},{} {}\nset output {}\n", svg ? "svg background 'white'" : "pngcairo",
+                     size.width_px, size.height_px, size.terminal_options, script_string(output.string()));
 }
 
 void run_gnuplot(std::string_view argument, const std::string& script) {
-  if (std::system("command -v gnuplot >/dev/null 2>&1") != 0)
-    throw Error(ErrorCode::output, argument, "no gnuplot", "gnuplot on the PATH");
+  need_gnuplot(argument);
   const auto before = std::signal(SIGPIPE, SIG_IGN);  // if gnuplot ends early, its exit status tells
   std::FILE* pipe = popen("gnuplot", "w");
   if (pipe != nullptr) std::fwrite(script.data(), 1, script.size(), pipe);
@@ -30,6 +29,11 @@ void run_gnuplot(std::string_view argument, const std::string& script) {
 }
 
 }  // namespace
+
+void need_gnuplot(std::string_view argument) {
+  if (std::system("command -v gnuplot >/dev/null 2>&1") != 0)
+    throw Error(ErrorCode::output, argument, "no gnuplot", "gnuplot on the PATH");
+}
 
 std::string script_string(std::string_view text) {
   std::string result(1, '\'');

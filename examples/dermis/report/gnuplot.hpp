@@ -14,11 +14,15 @@ inline constexpr std::array<std::string_view, 3> channel_colours = {"#c02020", "
 /// A string of a gnuplot script.
 std::string script_string(std::string_view text);
 
-/// Size of a figure.
+/// Size of a figure, and what else its terminal is told, as "dynamic font 'Helvetica,14'".
 struct FigureSize {
   int width_px;
   int height_px;
+  std::string_view terminal_options = {};
 };
+
+/// Throws Error(output) that names `argument` if there is no gnuplot.
+void need_gnuplot(std::string_view argument);
 
 /// Runs a script of one page whose output is an .svg or .png file; the script sets neither terminal nor output.
 /// `argument` is named in errors. Throws Error(output) if gnuplot is missing or fails, Error(usage) for a name that no

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <string>
 
 namespace dermis::program {
 
@@ -9,23 +10,26 @@ namespace dermis::program {
 /// tenth of the work or every ten seconds.
 class ProgressBar {
  public:
-  ProgressBar();
+  /// Lines begin with the name of the program.
+  explicit ProgressBar(std::string program = "dermis");
   ~ProgressBar();
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
 
-  /// `share` of the work is done, 0..1.
-  void update(double share);
+  /// `share` of the work is done, 0..1; `what` says what is being done.
+  void update(double share, const std::string& what = {});
 
  private:
   using Clock = std::chrono::steady_clock;
 
-  void draw(int percent);
-  void print_line(int percent);
+  void draw(int percent, const std::string& what);
+  void print_line(int percent, const std::string& what);
 
+  std::string program_;
   bool terminal_;
   bool drawn_ = false;
   int last_percent_ = -1;
+  std::string last_what_;
   Clock::time_point start_;
   Clock::time_point last_line_;
 };

@@ -20,4 +20,12 @@ class Stopwatch {
   Clock::time_point start_ = Clock::now();
 };
 
+/// Milliseconds that `work` takes.
+template <class Work>
+double time_ms(const Work& work) {
+  Stopwatch stopwatch;
+  work();
+  return stopwatch.lap_ms();
+}
+
 }  // namespace dermis::program
