@@ -14,9 +14,9 @@
 
 #include "dermis/device.hpp"
 #include "dermis/frame.hpp"
-#include "dermis/names.hpp"
 #include "dermis/profile.hpp"
 #include "dermis/taps.hpp"
+#include "dermis/words.hpp"
 
 struct _cl_command_queue;
 struct _cl_event;
@@ -47,7 +47,7 @@ enum class Method {
 };
 
 template <>
-inline constexpr std::array<Named<Method>, 3> names<Method> = {
+inline constexpr std::array<Named<Method>, 3> word_table<Method> = {
     {{Method::separable, "separable"}, {Method::exact, "exact"}, {Method::disc, "disc"}}};
 
 /// Method::disc samples the surface integral on discs (Golubev 2018). The distances of samples from a pixel are those
@@ -82,7 +82,8 @@ enum class Lighting {
 };
 
 template <>
-inline constexpr std::array<Named<Lighting>, 2> names<Lighting> = {{{Lighting::raw, "raw"}, {Lighting::lit, "lit"}}};
+inline constexpr std::array<Named<Lighting>, 2> word_table<Lighting> = {
+    {{Lighting::raw, "raw"}, {Lighting::lit, "lit"}}};
 
 /// The output of a pixel whose light or albedo is not finite. Such a pixel never gives light to another.
 enum class BadPixels {
@@ -92,7 +93,7 @@ enum class BadPixels {
 };
 
 template <>
-inline constexpr std::array<Named<BadPixels>, 3> names<BadPixels> = {
+inline constexpr std::array<Named<BadPixels>, 3> word_table<BadPixels> = {
     {{BadPixels::keep, "keep"}, {BadPixels::zero, "zero"}, {BadPixels::error, "error"}}};
 
 /// What a plan computes. With a quality or a tolerance, of which there is one at most and only with the separable
@@ -169,14 +170,15 @@ enum class TileKind : std::uint8_t {
 };
 
 template <>
-inline constexpr std::array<Named<TileKind>, 8> names<TileKind> = {{{TileKind::without_material, "without_material"},
-                                                                    {TileKind::narrow, "narrow"},
-                                                                    {TileKind::unlit, "unlit"},
-                                                                    {TileKind::uniform, "uniform"},
-                                                                    {TileKind::flat, "flat"},
-                                                                    {TileKind::smooth, "smooth"},
-                                                                    {TileKind::curved, "curved"},
-                                                                    {TileKind::reused, "reused"}}};
+inline constexpr std::array<Named<TileKind>, 8> word_table<TileKind> = {
+    {{TileKind::without_material, "without_material"},
+     {TileKind::narrow, "narrow"},
+     {TileKind::unlit, "unlit"},
+     {TileKind::uniform, "uniform"},
+     {TileKind::flat, "flat"},
+     {TileKind::smooth, "smooth"},
+     {TileKind::curved, "curved"},
+     {TileKind::reused, "reused"}}};
 
 /// The tiles of a run.
 struct TileMap {

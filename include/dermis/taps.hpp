@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
-#include "dermis/names.hpp"
 #include "dermis/profile.hpp"
+#include "dermis/words.hpp"
 
 namespace dermis {
 
@@ -21,12 +21,12 @@ enum class Model {
 };
 
 template <>
-inline constexpr std::array<Named<Model>, 6> names<Model> = {{{Model::pre_integrated, "pre-integrated"},
-                                                              {Model::artist, "artist"},
-                                                              {Model::guided, "guided"},
-                                                              {Model::svd, "svd"},
-                                                              {Model::gaussians, "gaussians"},
-                                                              {Model::optimised, "optimised"}}};
+inline constexpr std::array<Named<Model>, 6> word_table<Model> = {{{Model::pre_integrated, "pre-integrated"},
+                                                                   {Model::artist, "artist"},
+                                                                   {Model::guided, "guided"},
+                                                                   {Model::svd, "svd"},
+                                                                   {Model::gaussians, "gaussians"},
+                                                                   {Model::optimised, "optimised"}}};
 
 /// A way to place the taps of a pass.
 enum class Placement {
@@ -37,10 +37,10 @@ enum class Placement {
 };
 
 template <>
-inline constexpr std::array<Named<Placement>, 4> names<Placement> = {{{Placement::uniform, "uniform"},
-                                                                      {Placement::importance, "importance"},
-                                                                      {Placement::quadratic, "quadratic"},
-                                                                      {Placement::optimised, "optimised"}}};
+inline constexpr std::array<Named<Placement>, 4> word_table<Placement> = {{{Placement::uniform, "uniform"},
+                                                                           {Placement::importance, "importance"},
+                                                                           {Placement::quadratic, "quadratic"},
+                                                                           {Placement::optimised, "optimised"}}};
 
 /// The points that a pass can read.
 enum class Fetch {
@@ -49,7 +49,8 @@ enum class Fetch {
 };
 
 template <>
-inline constexpr std::array<Named<Fetch>, 2> names<Fetch> = {{{Fetch::integer, "integer"}, {Fetch::linear, "linear"}}};
+inline constexpr std::array<Named<Fetch>, 2> word_table<Fetch> = {
+    {{Fetch::integer, "integer"}, {Fetch::linear, "linear"}}};
 
 /// How far taps may be off at most, as TapSet::predicted_rel_l2.
 enum class Quality {
@@ -60,10 +61,10 @@ enum class Quality {
 };
 
 template <>
-inline constexpr std::array<Named<Quality>, 4> names<Quality> = {{{Quality::draft, "draft"},
-                                                                  {Quality::preview, "preview"},
-                                                                  {Quality::final, "final"},
-                                                                  {Quality::reference, "reference"}}};
+inline constexpr std::array<Named<Quality>, 4> word_table<Quality> = {{{Quality::draft, "draft"},
+                                                                       {Quality::preview, "preview"},
+                                                                       {Quality::final, "final"},
+                                                                       {Quality::reference, "reference"}}};
 
 /// The error that a quality allows, as a share of the light: 0.05, 0.02, 0.006, or 0 for the reference.
 double tolerance_of(Quality quality);

@@ -11,8 +11,8 @@
 
 #include "dermis/device.hpp"
 #include "dermis/frame.hpp"
-#include "dermis/names.hpp"
 #include "dermis/profile.hpp"
+#include "dermis/words.hpp"
 
 namespace dermis {
 
@@ -55,7 +55,7 @@ enum class TextureMethod {
 };
 
 template <>
-inline constexpr std::array<Named<TextureMethod>, 2> names<TextureMethod> = {
+inline constexpr std::array<Named<TextureMethod>, 2> word_table<TextureMethod> = {
     {{TextureMethod::gaussians, "gaussians"}, {TextureMethod::recursive, "recursive"}}};
 
 struct TextureOptions {

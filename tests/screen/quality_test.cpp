@@ -146,7 +146,7 @@ TEST_CASE("qualities and sizes that cannot be", "[quality]") {
 }
 
 TEST_CASE("values of enumerations and their words", "[quality]") {
-  for (const auto& [value, name] : dermis::names<dermis::Model>) {
+  for (const auto& [value, name] : dermis::word_table<dermis::Model>) {
     CHECK(name_of(value) == name);
     CHECK(dermis::value_named<dermis::Model>(name) == value);
   }

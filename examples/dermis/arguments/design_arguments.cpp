@@ -81,17 +81,18 @@ void add_design_arguments(CLI::App& app, DesignArguments& arguments) {
            "the products of one-dimensional functions that stand for the profile: pre-integrated, artist or guided "
            "(Jimenez et al. 2015), svd, gaussians, or optimised for natural images",
            defaults.model);
-  add_count(app, "--rank", arguments.rank,
-            fmt::format("how many products: 1..6 for svd and gaussians, 1..3 for optimised, 1 for the others{}",
-                        or_auto ? "; auto: as few as are good enough" : ""),
-            words_for_counts(false, or_auto), [](int rank) { return rank <= 6; },
-            "a whole number from 1 to 6, as the model allows", or_auto ? DesignArguments::automatic : defaults.rank);
-  add_count(app, "--taps", arguments.taps,
-            fmt::format("taps per pass, odd; dense: one on every pixel{}",
-                        or_auto ? "; auto: for each width of kernel as few as are good enough" : ""),
-            words_for_counts(true, or_auto), [](int taps) { return taps >= 3 && taps % 2 == 1; },
-            fmt::format("an odd number from 3 to {}", most_taps),
-            or_auto ? DesignArguments::automatic : defaults.count);
+  add_count(
+      app, "--rank", arguments.rank,
+      fmt::format("how many products: 1..6 for svd and gaussians, 1..3 for optimised, 1 for the others{}",
+                  or_auto ? "; auto: as few as are good enough" : ""),
+      words_for_counts(false, or_auto), [](int rank) { return rank <= 6; },
+      "a whole number from 1 to 6, as the model allows", or_auto ? DesignArguments::automatic : defaults.rank);
+  add_count(
+      app, "--taps", arguments.taps,
+      fmt::format("taps per pass, odd; dense: one on every pixel{}",
+                  or_auto ? "; auto: for each width of kernel as few as are good enough" : ""),
+      words_for_counts(true, or_auto), [](int taps) { return taps >= 3 && taps % 2 == 1; },
+      fmt::format("an odd number from 3 to {}", most_taps), or_auto ? DesignArguments::automatic : defaults.count);
   add_word(app, "--placement", arguments.placement,
            "where taps lie: uniform, importance (the same light each), quadratic or optimised (up to 65 taps; more lie "
            "as by importance)",

@@ -37,9 +37,8 @@ class WrappedHelp : public CLI::Formatter {
 }  // namespace
 
 HelpGroup::~HelpGroup() {
-  const auto options = app_.get_options();
-  for (std::size_t i = first_; i < options.size(); ++i)
-    if (!options[i]->get_positional()) options[i]->group(name_);
+  for (CLI::Option* option : app_.get_options())
+    if (option->get_group() == "Options") option->group(name_);
 }
 
 void wrap_help(CLI::App& app) { app.formatter(std::make_shared<WrappedHelp>()); }

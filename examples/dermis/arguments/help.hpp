@@ -2,16 +2,14 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
-#include <cstddef>
 #include <string>
 
 namespace dermis::program {
 
-/// Puts the options that are added while it lives into one group of the help.
+/// Puts the options that have no group yet when it goes, --help among them, into one group of the help.
 class HelpGroup {
  public:
-  HelpGroup(CLI::App& app, std::string name)
-      : app_(app), name_(std::move(name)), first_(app.get_options().size()) {}
+  HelpGroup(CLI::App& app, std::string name) : app_(app), name_(std::move(name)) {}
   ~HelpGroup();
   HelpGroup(const HelpGroup&) = delete;
   HelpGroup& operator=(const HelpGroup&) = delete;
@@ -19,7 +17,6 @@ class HelpGroup {
  private:
   CLI::App& app_;
   std::string name_;
-  std::size_t first_;
 };
 
 /// Help of lines of at most 100 columns, for the commands that are added afterwards too.

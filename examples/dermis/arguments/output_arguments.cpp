@@ -26,8 +26,6 @@ constexpr Output outputs[] = {{"--output", &OutputFiles::output, ".exr"},
                               {"--tile-map", &OutputFiles::tile_map, ".png"},
                               {"--stats-json", &OutputFiles::stats_json, ".json"}};
 
-bool is_file(const std::string& path) { return !path.empty() && path != "-"; }
-
 void check_standard_output(const OutputArguments& arguments) {
   if (arguments.files.stats_json != "-") return;
   const char* other = arguments.stats ? "--stats" : !arguments.files.tile_map.empty() ? "--tile-map" : nullptr;
@@ -81,7 +79,7 @@ std::vector<PictureFiles> files_of(const OutputArguments& arguments) {
     PictureFiles one{input, arguments.files};
     for (const Output& output : outputs) {
       std::string& path = one.outputs.*output.path;
-      if (!is_file(path)) continue;
+      if (path.empty() || path == "-") continue;
       check_kind(output, path, count);
       if (count == 1) continue;
       path = (fs::path(path) / (fs::path(input).stem().string() + output.ending)).string();
@@ -96,20 +94,11 @@ std::vector<PictureFiles> files_of(const OutputArguments& arguments) {
 }
 
 void check_outputs(const PictureFiles& files) {
-  const auto place = [](const fs::path& path) { return fs::weakly_canonical(fs::absolute(path)); };
-  std::vector<std::pair<std::string, fs::path>> taken = {{"the input", files.input}};
-  for (const Output& output : outputs) {
-    const std::string& path = files.outputs.*output.path;
-    if (!is_file(path)) continue;
-    const bool is_result = output.path == &OutputFiles::output;
-    for (const auto& [other, other_path] : taken) {
-      if (!is_result && place(path) == place(other_path))
-        throw Error(ErrorCode::usage, output.argument, path, "a file that is not " + other + " as well");
-    }
-    taken.emplace_back(output.argument, path);
-  }
+  std::vector<NamedFile> beside;
   for (const Output& output : outputs)
-    if (is_file(files.outputs.*output.path)) check_writable(output.argument, files.outputs.*output.path);
+    if (output.path != &OutputFiles::output) beside.push_back({output.argument, files.outputs.*output.path});
+  check_writable("--output", files.outputs.output);
+  check_outputs({{"the input", files.input}, {"--output", files.outputs.output}}, beside);
 }
 
 }  // namespace dermis::program

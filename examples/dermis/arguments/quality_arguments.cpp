@@ -8,11 +8,12 @@
 namespace dermis::program {
 
 void add_quality_argument(CLI::App& app, QualityArguments& arguments) {
-  add_word(app, "--quality", arguments.quality,
-           "how far taps may be off at most, relative L2 on natural images at the material's median depth, and the "
-           "pixels they read for skin whose kernel has a radius of 50: draft 5 %, 14; preview 2 %, 34; final 0.6 %, 75; "
-           "reference: the exact method, some hundred times as long",
-           default_quality);
+  add_word(
+      app, "--quality", arguments.quality,
+      "how far taps may be off at most, relative L2 on natural images at the material's median depth, and the "
+      "pixels they read for skin whose kernel has a radius of 50: draft 5 %, 14; preview 2 %, 34; final 0.6 %, 75; "
+      "reference: the exact method, some hundred times as long",
+      default_quality);
 }
 
 void add_tolerance_argument(CLI::App& app, QualityArguments& arguments) {

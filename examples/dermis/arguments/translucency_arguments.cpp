@@ -22,7 +22,8 @@ void add_translucency_arguments(CLI::App& app, TranslucencyArguments& arguments)
       "--translucency", arguments.wanted,
       "add light that comes through from behind before it is scattered: of --lights, through what their shadow "
       "maps or the thickness pass (mm) say, the larger one of both");
-  app.add_option("--lights", arguments.lights, "the lights of --translucency, as `dermis light --help` describes them")->type_name("FILE.json");
+  app.add_option("--lights", arguments.lights, "the lights of --translucency, as `dermis light --help` describes them")
+      ->type_name("FILE.json");
   app.add_option("--thickness-shrink", options.shrink_units,
                  "how far below the surface a shadow map is looked up, scene units")
       ->check(number_from_0("scene units"))

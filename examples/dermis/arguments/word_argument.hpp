@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "dermis/names.hpp"
+#include "dermis/words.hpp"
 
 namespace dermis::program {
 
@@ -23,15 +23,15 @@ CLI::Validator file_name_ending(std::initializer_list<std::string_view> endings)
 CLI::Validator folder_or_file_ending(std::initializer_list<std::string_view> endings);
 
 /// The words of an enumeration.
-template <HasNames Value>
+template <HasWords Value>
 std::vector<std::string> words_of() {
   std::vector<std::string> words;
-  for (const Named<Value>& named : names<Value>) words.emplace_back(named.name);
+  for (const Named<Value>& named : word_table<Value>) words.emplace_back(named.name);
   return words;
 }
 
 /// Adds an option that takes a word of an enumeration and puts its value into `target`, a Value or an optional one.
-template <HasNames Value, class Target>
+template <HasWords Value, class Target>
 CLI::Option* add_word(CLI::App& app, const std::string& option, Target& target, const std::string& help,
                       Value otherwise) {
   return app
@@ -43,7 +43,7 @@ CLI::Option* add_word(CLI::App& app, const std::string& option, Target& target, 
 }
 
 /// Adds an option that takes a word of an enumeration, whose default is what `target` holds.
-template <HasNames Value>
+template <HasWords Value>
 CLI::Option* add_word(CLI::App& app, const std::string& option, Value& target, const std::string& help) {
   return add_word<Value>(app, option, target, help, target);
 }

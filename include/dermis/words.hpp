@@ -16,23 +16,23 @@ struct Named {
 
 /// All values of an enumeration and their words, in the order of the values. Enumerations specialise it.
 template <class Value>
-inline constexpr std::array<Named<Value>, 0> names = {};
+inline constexpr std::array<Named<Value>, 0> word_table = {};
 
 template <class Value>
-concept HasNames = !names<Value>.empty();
+concept HasWords = !word_table<Value>.empty();
 
 /// The word for a value.
-template <HasNames Value>
+template <HasWords Value>
 constexpr std::string_view name_of(Value value) {
-  for (const Named<Value>& named : names<Value>)
+  for (const Named<Value>& named : word_table<Value>)
     if (named.value == value) return named.name;
   return {};
 }
 
 /// The value that the word stands for; none if it is no word of the enumeration.
-template <HasNames Value>
+template <HasWords Value>
 constexpr std::optional<Value> value_named(std::string_view name) {
-  for (const Named<Value>& named : names<Value>)
+  for (const Named<Value>& named : word_table<Value>)
     if (named.name == name) return named.value;
   return std::nullopt;
 }
