@@ -60,7 +60,7 @@ static inline vint shear_at(const struct FrameParams* f, const Window* w, int x,
   const Points p = points_at(f, load_floats(w->depth + pixel_at(w, x, y)), x, y);
   const Tangent along_x = tangent_x(f, &p, depth_slope(f, w, x, y, 1, 0));
   const Tangent along_y = tangent_y(f, &p, depth_slope(f, w, x, y, 0, 1));
-  return whole(rint(4096.0f * shear_of(along_x, along_y)));
+  return convert_vint(rint(4096.0f * shear_of(along_x, along_y)));
 }
 #endif
 
