@@ -7,7 +7,7 @@
 
 namespace dermis::bench {
 
-/// The value that `share` of the others lie below; 0 if there are none.
+/// The value with `share` of the others below it; 0 if there are no values.
 inline double percentile(std::vector<double> values, double share) {
   if (values.empty()) return 0;
   std::sort(values.begin(), values.end());
