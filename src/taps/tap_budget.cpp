@@ -50,14 +50,14 @@ double middle_radius_px(int level) {
 
 TapBudget::TapBudget(const Profile& profile, const TapsDesign& design) : design_(design) {
   const DesignedTaps designed(profile, design);
-  for (const int count : tap_counts(design)) levels_.push_back(designed.with_count(count));
+  for (const int count : tap_counts(design)) by_count_.push_back(designed.with_count(count));
 }
 
 SizedTaps TapBudget::at(int level) {
   const int place = level % group;
   if (place == 0) {
     ahead_.reset();
-    if (!at_last_level()) ahead_ = good_enough(level + group - 1);
+    if (!at_last_count()) ahead_ = good_enough(level + group - 1);
   }
   if (place == group - 1 && ahead_) return *std::exchange(ahead_, std::nullopt);
   return fitted(level, place == 0);
@@ -67,26 +67,26 @@ SizedTaps TapBudget::good_enough(int level) {
   const double pixel_mm = designed().radius_mm() / middle_radius_px(level);
   SizedTaps taps = fitted(level, true);
   double enough = design_.tolerance;
-  for (bool has_model = false; !at_last_level(); taps = fitted(level, true)) {
+  for (bool has_model = false; !at_last_count(); taps = fitted(level, true)) {
     const double error = designed().predicted_rel_l2(taps.placed, pixel_mm);
     if (error > enough && !has_model) {
       enough = worthwhile_rel_l2(designed(), enough, pixel_mm);
       has_model = true;
     }
     if (error <= enough) break;
-    ++level_;
+    ++count_;
   }
   return taps;
 }
 
 SizedTaps TapBudget::fitted(int level, bool look) {
-  const DesignedTaps& level = levels_[level_];
-  const auto pairs = static_cast<std::size_t>(level.count() / 2);
+  const DesignedTaps& designed = by_count_[count_];
+  const auto pairs = static_cast<std::size_t>(designed.count() / 2);
   const double radius_px = middle_radius_px(level);
   look = look || is_searched_at_every_level(design_.rank, pairs);
   const Search search = near_px_.size() != pairs ? Search::everywhere : look ? Search::nearby : Search::nowhere;
-  SizedTaps taps =
-      level.at(level.radius_mm() / radius_px, Fetch::integer, search, scaled(near_px_, radius_px / near_radius_px_));
+  SizedTaps taps = designed.at(designed.radius_mm() / radius_px, Fetch::integer, search,
+                               scaled(near_px_, radius_px / near_radius_px_));
   near_px_ = taps.placed.offsets_px;
   near_radius_px_ = radius_px;
   return taps;

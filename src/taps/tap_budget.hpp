@@ -27,7 +27,7 @@ class TapBudget {
   TapBudget(const Profile& profile, const TapsDesign& design);
 
   /// For the model and its radius, which do not depend on the count.
-  const DesignedTaps& designed() const { return levels_.front(); }
+  const DesignedTaps& designed() const { return by_count_.front(); }
 
   /// The taps of a level. To be called for each level in turn, from 0.
   SizedTaps at(int level);
@@ -37,11 +37,11 @@ class TapBudget {
   SizedTaps good_enough(int level);
   /// Of the present count.
   SizedTaps fitted(int level, bool look);
-  bool at_last_level() const { return level_ + 1 == levels_.size(); }
+  bool at_last_count() const { return count_ + 1 == by_count_.size(); }
 
   TapsDesign design_;
-  std::vector<DesignedTaps> levels_;  ///< the design with each count
-  std::size_t level_ = 0;
+  std::vector<DesignedTaps> by_count_;  ///< the design with each count
+  std::size_t count_ = 0;
   std::vector<double> near_px_;  ///< the latest taps, and the radius they are for
   double near_radius_px_ = 1;
   std::optional<SizedTaps> ahead_;  ///< of the last level of the present group
