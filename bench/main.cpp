@@ -95,8 +95,8 @@ void measure(const Arguments& arguments) {
   bench::Measurement measurement;
   {
     program::ProgressBar progress("dermis-bench");
-    measurement = bench::measure_cases(
-        cases, setup, [&](double share, const std::string& what) { progress.update(share, what); });
+    measurement = bench::measure_cases(cases, setup,
+                                       [&](double share, const std::string& what) { progress.update(share, what); });
   }
   fmt::print("{}", bench::table_of(measurement));
   if (!arguments.json.empty()) program::write_text("--json", arguments.json, bench::json_of(measurement));

@@ -8,8 +8,9 @@ namespace {
 
 // In the order of the enumerations.
 constexpr std::string_view family_names[] = {
-    "dermis", "dermis-exact", "dermis-disc", "texture-gaussians", "texture-recursive", "naive",   "rule-2012",
-    "simd",   "simd-depth",   "opencv-separable", "opencv-bilateral", "fft", "start-up"};
+    "dermis",    "dermis-exact", "dermis-disc", "texture-gaussians", "texture-recursive", "naive",
+    "rule-2012", "simd",         "simd-depth",  "opencv-separable",  "opencv-bilateral",  "fft",
+    "start-up"};
 constexpr std::string_view group_titles[] = {"methods",
                                              "coverage",
                                              "kernel width",

@@ -235,7 +235,8 @@ Measurement measure_cases(const std::vector<Case>& cases, const Setup& setup, co
   }
   if (setup.picture) {
     found.picture = setup.picture->name;
-    for (const Part& part : stage.truth(setup.picture->spec).parts) found.parts.push_back({part.name, part.places.size()});
+    for (const Part& part : stage.truth(setup.picture->spec).parts)
+      found.parts.push_back({part.name, part.places.size()});
   }
   report(1, "");
   return found;

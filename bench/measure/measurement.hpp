@@ -53,9 +53,9 @@ struct PartSize {
 
 struct Measurement {
   DeviceInfo device;
-  double load_before = 0;            ///< load_average() before it began
-  std::string picture = {};          ///< its name
-  std::vector<PartSize> parts = {};  ///< of the picture
+  double load_before = 0;                              ///< load_average() before it began
+  std::string picture = {};                            ///< its name
+  std::vector<PartSize> parts = {};                    ///< of the picture
   std::map<std::pair<int, int>, double> copy_ms = {};  ///< median by size of frame
   std::vector<Row> rows = {};                          ///< in the order of the cases
 };
@@ -64,8 +64,8 @@ struct Measurement {
 using Report = std::function<void(double share, const std::string& what)>;
 
 /// Prepares each case and compares its first result with the truth; then goes round all of them, in random order, until
-/// each has had its runs. The first round does not count, but for what takes seconds. If there are cases on a picture, the exact method on it is the
-/// first of them.
+/// each has had its runs. The first round does not count, but for what takes seconds. If there are cases on a picture,
+/// the exact method on it is the first of them.
 Measurement measure_cases(const std::vector<Case>& cases, const Setup& setup, const Report& report);
 
 }  // namespace dermis::bench

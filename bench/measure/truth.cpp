@@ -22,8 +22,9 @@ constexpr int block_height_px = 4;
 
 /// The number of blocks whose surface integral is affordable.
 int affordable_blocks(const Scene& scene) {
-  constexpr double pairs = 2.5e8;                                    // a few seconds of two cores
-  const double typical_reach_px = kernel_reach * scene.spec.kernel_px / 2;  // most of the scene is at depth 2 and beyond
+  constexpr double pairs = 2.5e8;  // a few seconds of two cores
+  const double typical_reach_px =
+      kernel_reach * scene.spec.kernel_px / 2;  // most of the scene is at depth 2 and beyond
   return std::max(8,
                   static_cast<int>(pairs / std::pow(2 * typical_reach_px + 1, 2) / (block_width_px * block_height_px)));
 }

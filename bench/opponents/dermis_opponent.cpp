@@ -37,8 +37,8 @@ class Filter final : public Opponent {
   std::vector<float> result() override {
     std::vector<float> planes(3 * scene_.pixels());
     each_value([&](std::size_t pixel, std::size_t c) {
-      planes[c * scene_.pixels() + pixel] = half_ ? static_cast<float>(value_of_half(half_scattered_[4 * pixel + c]))
-                                                  : scattered_[scene_.at(pixel, c)];
+      planes[c * scene_.pixels() + pixel] =
+          half_ ? static_cast<float>(value_of_half(half_scattered_[4 * pixel + c])) : scattered_[scene_.at(pixel, c)];
     });
     return planes;
   }

@@ -12,10 +12,10 @@ namespace {
 
 constexpr std::array<double, 3> guides = {0, 2, 4};
 
-/// What the kernel is like for each of `guides`.
+/// The kernel for each of `guides`.
 struct Guided {
   std::vector<double> deviation_mm;   ///< along an axis, of the widest channel
-  std::vector<double> half_light_mm;  ///< half-width of the strip that holds half of that channel's light
+  std::vector<double> half_light_mm;  ///< half-width of the strip that holds half of the channel's light
   std::vector<double> natural;
 };
 
@@ -52,14 +52,7 @@ bool rises(const std::vector<double>& values) { return values[0] < values[1] && 
 }  // namespace
 
 Claims guided(const Study& study) {
-  std::vector<std::string> width_holds;
-  std::vector<std::string> width_fails;
-  std::vector<std::string> close_holds;
-  std::vector<std::string> close_fails;
-  std::vector<std::string> widths;
-  std::vector<std::string> errors;
-  nlohmann::ordered_json width_numbers;
-  nlohmann::ordered_json error_numbers;
+  Evidence widths, closeness;
   for (const Medium& medium : study.media) {
     const Sample& sample = medium.sample;
     const Guided kernels = guided_of(study, sample);
@@ -67,28 +60,25 @@ Claims guided(const Study& study) {
     const double true_deviation_mm = deviation_px(truth) * sample.pixel_mm;
     const double true_half_light_mm = half_light_px(truth) * sample.pixel_mm;
     const double rank_1 = study.natural.rel_l2(medium.rank_1, sample);
-    width_numbers[sample.name] = {{"deviation_mm", kernels.deviation_mm},
-                                  {"true_deviation_mm", true_deviation_mm},
-                                  {"half_light_mm", kernels.half_light_mm},
-                                  {"true_half_light_mm", true_half_light_mm}};
-    error_numbers[sample.name] = {{"natural", kernels.natural}, {"natural_pre_integrated", rank_1}};
-    widths.push_back(
-        fmt::format("{}: half within {:.2g} mm (exact {:.2g}), standard deviation {:.3g} mm (exact {:.3g})",
-                    sample.name, fmt::join(kernels.half_light_mm, ", "), true_half_light_mm,
-                    fmt::join(kernels.deviation_mm, ", "), true_deviation_mm));
-    errors.push_back(fmt::format("{}: {}, pre-integrated {}", sample.name, percents(kernels.natural), percent(rank_1)));
-    (rises(kernels.half_light_mm) ? width_holds : width_fails).push_back(sample.name);
-    (kernels.natural[1] < kernels.natural[0] && kernels.natural[1] < kernels.natural[2] ? close_holds : close_fails)
-        .push_back(sample.name);
+    widths.add(sample.name,
+               fmt::format("half within {:.2g} mm (exact {:.2g}), standard deviation {:.3g} mm (exact {:.3g})",
+                           fmt::join(kernels.half_light_mm, ", "), true_half_light_mm,
+                           fmt::join(kernels.deviation_mm, ", "), true_deviation_mm),
+               {{"deviation_mm", kernels.deviation_mm},
+                {"true_deviation_mm", true_deviation_mm},
+                {"half_light_mm", kernels.half_light_mm},
+                {"true_half_light_mm", true_half_light_mm}},
+               rises(kernels.half_light_mm));
+    closeness.add(sample.name, fmt::format("{}, pre-integrated {}", percents(kernels.natural), percent(rank_1)),
+                  {{"natural", kernels.natural}, {"natural_pre_integrated", rank_1}},
+                  kernels.natural[1] < kernels.natural[0] && kernels.natural[1] < kernels.natural[2]);
   }
   return {
       {"appendix_widths", "Appendix A", "guided kernels: k = 0 is sharper than k = 2, k = 4 smoother",
        "the strip with half of the light widens with k (b = 50, read as 1/mm²)",
-       fmt::format("k = 0, 2, 4, widest channel:<br>{}", fmt::join(widths, "<br>")),
-       verdict_of(width_holds, width_fails), width_numbers},
+       widths.measured("k = 0, 2, 4, widest channel:"), widths.verdict(), widths.numbers()},
       {"appendix_k2", "Appendix A", "k = 2 is near the true kernel", "nearer than k = 0 and k = 4 on natural pictures",
-       fmt::format("k = 0, 2, 4:<br>{}", fmt::join(errors, "<br>")), verdict_of(close_holds, close_fails),
-       error_numbers}};
+       closeness.measured("k = 0, 2, 4:"), closeness.verdict(), closeness.numbers()}};
 }
 
 }  // namespace dermis::bench

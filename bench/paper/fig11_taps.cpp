@@ -1,23 +1,22 @@
-// Figure 11: importance sampling, and how many taps it takes.
+// Figure 11: importance sampling, and the number of taps that it takes.
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
-#include "paper/plot.hpp"
 #include "paper/study.hpp"
+#include "report/panel.hpp"
 
 namespace dermis::bench {
 
 namespace {
 
-struct Series {
+struct Design {
   std::string title;
   const char* style;
   TapsDesign design;
 };
 
-const std::vector<Series>& series() {
+const std::vector<Design>& designs() {
   using enum Placement;
-  static const std::vector<Series> all = {{"uniform",
+  static const std::vector<Design> all = {{"uniform",
                                            "linespoints lc rgb '#d1495b' lw 2 pt 5 ps 0.6",
                                            {.model = Model::pre_integrated, .placement = uniform}},
                                           {"quadratic",
@@ -48,10 +47,10 @@ Panel errors_by_count(const Study& study, const Sample& sample, double width) {
       "set format y '10^{%T}'\nset xlabel 'taps per pass'\n"
       "set ylabel 'relative L2 error on natural pictures'\nset key bottom left",
       {}};
-  for (const Series& one : series()) {
+  for (const Design& one : designs()) {
     Curve curve{one.title, one.style, {}};
     for (const int count : counts) {
-      curve.points.emplace_back(count, study.natural.rel_l2(taps_of(sample, one.design, count), sample));
+      curve.add(count, study.natural.rel_l2(taps_of(sample, one.design, count), sample));
     }
     panel.curves.push_back(curve);
   }
@@ -66,13 +65,13 @@ struct SevenTaps {
   std::string name;
   double uniform, importance, optimised, many;  ///< against the exact convolution; `many` is uniform 513
   double uniform_added, importance_added;       ///< against uniform 513
-  double importance_linear_added;               ///< the same, read by linear interpolation
+  double importance_linear_added;               ///< against uniform 513, read by linear interpolation
   int faithful_taps;                            ///< importance-sampled ones that add no more than `many` is off
 };
 
 SevenTaps seven_taps_of(const Study& study, const std::string& name, const Sample& sample) {
   constexpr int few = 7;
-  const auto& all = series();
+  const auto& all = designs();
   const Products many = taps_of(sample, all[0].design, 513);
   const Products uniform = taps_of(sample, all[0].design, few);
   const Products importance = taps_of(sample, all[2].design, few);
@@ -91,46 +90,41 @@ SevenTaps seven_taps_of(const Study& study, const std::string& name, const Sampl
 Claims fig11(const Study& study) {
   const Sample& skin = study.skin().sample;
   const Sample& burley = study.media[1].sample;
-  draw(study.folder / "fig11.svg",
+  draw("--paper", study.folder / "fig11.svg",
        {errors_by_count(study, skin, width_px), errors_by_count(study, study.wider[0], 2 * width_px),
         errors_by_count(study, burley, width_px)},
        3);
 
-  std::vector<std::string> better_holds;
-  std::vector<std::string> better_fails;
-  std::vector<std::string> faithful_holds;
-  std::vector<std::string> faithful_fails;
-  std::vector<std::string> added;
-  std::vector<std::string> errors;
-  nlohmann::ordered_json numbers;
+  Evidence better, faithful;
   for (const SevenTaps& row :
        {seven_taps_of(study, "skin W=16", skin), seven_taps_of(study, "skin W=32", study.wider[0]),
         seven_taps_of(study, "skin-measured W=16", burley),
         seven_taps_of(study, "skin-measured W=32", study.wider[1])}) {
-    numbers[row.name] = {{"uniform_7", row.uniform},
-                         {"importance_7", row.importance},
-                         {"optimised_7", row.optimised},
-                         {"uniform_513", row.many},
-                         {"uniform_7_from_513", row.uniform_added},
-                         {"importance_7_from_513", row.importance_added},
-                         {"importance_7_linear_from_513", row.importance_linear_added},
-                         {"importance_taps_for_faithful", row.faithful_taps}};
-    added.push_back(fmt::format("{}: {} against {} (read linearly: {})", row.name, percent(row.importance_added),
-                                percent(row.uniform_added), percent(row.importance_linear_added)));
-    errors.push_back(fmt::format("{}: {}, optimised {}, uniform {}, uniform 513 {}; faithful takes {} taps", row.name,
-                                 percent(row.importance), percent(row.optimised), percent(row.uniform),
-                                 percent(row.many), row.faithful_taps));
-    (row.importance_added <= row.uniform_added / 2 ? better_holds : better_fails).push_back(row.name);
-    (row.importance_added <= row.many ? faithful_holds : faithful_fails).push_back(row.name);
+    const Json numbers = {{"uniform_7", row.uniform},
+                          {"importance_7", row.importance},
+                          {"optimised_7", row.optimised},
+                          {"uniform_513", row.many},
+                          {"uniform_7_from_513", row.uniform_added},
+                          {"importance_7_from_513", row.importance_added},
+                          {"importance_7_linear_from_513", row.importance_linear_added},
+                          {"importance_taps_for_faithful", row.faithful_taps}};
+    better.add(row.name,
+               fmt::format("{} against {} (read linearly: {})", percent(row.importance_added),
+                           percent(row.uniform_added), percent(row.importance_linear_added)),
+               numbers, row.importance_added <= row.uniform_added / 2);
+    faithful.add(
+        row.name,
+        fmt::format("{}, optimised {}, uniform {}, uniform 513 {}; faithful takes {} taps", percent(row.importance),
+                    percent(row.optimised), percent(row.uniform), percent(row.many), row.faithful_taps),
+        numbers, row.importance_added <= row.many);
   }
-  return {{"fig11_importance", "Fig. 11", "7 importance-sampled taps do far better than 7 uniform ones",
-           "at most half as far from 513 uniform taps, on natural pictures",
-           fmt::format("distance from 513 uniform taps:<br>{}", fmt::join(added, "<br>")),
-           verdict_of(better_holds, better_fails), numbers},
-          {"fig11_seven_taps", "Fig. 11, Section 6", "7 importance-sampled taps are faithful",
-           "they are no further from 513 uniform taps than those are from the exact convolution",
-           fmt::format("error of 7 taps against the exact convolution:<br>{}", fmt::join(errors, "<br>")),
-           verdict_of(faithful_holds, faithful_fails), numbers}};
+  return {
+      {"fig11_importance", "Fig. 11", "7 importance-sampled taps do far better than 7 uniform ones",
+       "at most half as far from 513 uniform taps, on natural pictures",
+       better.measured("distance from 513 uniform taps:"), better.verdict(), better.numbers()},
+      {"fig11_seven_taps", "Fig. 11, Section 6", "7 importance-sampled taps are faithful",
+       "they are no further from 513 uniform taps than those are from the exact convolution",
+       faithful.measured("error of 7 taps against the exact convolution:"), faithful.verdict(), faithful.numbers()}};
 }
 
 }  // namespace dermis::bench

@@ -1,16 +1,16 @@
-// Figure 2: how fast singular values fall.
+// Figure 2: the decay of singular values.
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
-#include "paper/plot.hpp"
+#include <algorithm>
+
 #include "paper/study.hpp"
+#include "report/panel.hpp"
 
 namespace dermis::bench {
 
 namespace {
 
 constexpr int most_values = 20;
-constexpr std::array<const char*, 3> channel_names = {"red", "green", "blue"};
 
 double relative(const Svd& svd, int channel, int number) {
   return svd.values[channel][number] / svd.values[channel][0];
@@ -28,67 +28,61 @@ void draw_values(const Study& study) {
     for (int c = 0; c < 3; ++c) {
       Curve curve{channel_names[c], fmt::format("linespoints lc rgb '{}' lw 2 pt 7 ps 0.5", channel_colours[c]), {}};
       for (int i = 0; i < most_values; ++i) {
-        // What is left of an exact rank is rounding.
-        if (relative(medium.svd, c, i) > 1e-10) curve.points.emplace_back(i + 1, relative(medium.svd, c, i));
+        // Beyond an exact rank there is only rounding.
+        if (relative(medium.svd, c, i) > 1e-10) curve.add(i + 1, relative(medium.svd, c, i));
       }
       panel.curves.push_back(curve);
     }
     panels.push_back(panel);
   }
-  draw(study.folder / "fig2.svg", panels, 3);
+  draw("--paper", study.folder / "fig2.svg", panels, 3);
 }
 
 Claim decay(const Study& study) {
   constexpr int few = 3;
   constexpr double appreciable = 0.01;
-  std::vector<std::string> holds_for;
-  std::vector<std::string> fails_for;
-  std::vector<std::string> texts;
-  nlohmann::ordered_json numbers;
+  Evidence found;
   for (const Medium& medium : study.media) {
     double next = 0;
+    Json numbers;
     for (int c = 0; c < 3; ++c) {
       std::vector<double> values;
       for (int i = 0; i < 8; ++i) values.push_back(relative(medium.svd, c, i));
-      numbers[medium.sample.name][channel_names[c]] = values;
+      numbers[channel_names[c]] = values;
       next = std::max(next, values[few]);
     }
-    const auto& red = numbers[medium.sample.name]["red"];
-    texts.push_back(fmt::format("{}: red 1, {:.2g}, {:.2g}, {:.2g}, {:.2g}, {:.2g}, {:.2g}; 4th at most {:.2g}",
-                                medium.sample.name, red[1].get<double>(), red[2].get<double>(), red[3].get<double>(),
-                                red[4].get<double>(), red[5].get<double>(), red[6].get<double>(), next));
-    (next < appreciable ? holds_for : fails_for).push_back(medium.sample.name);
+    const std::vector<double> red = numbers["red"];
+    found.add(medium.sample.name,
+              fmt::format("red 1, {:.2g}, {:.2g}, {:.2g}, {:.2g}, {:.2g}, {:.2g}; 4th at most {:.2g}", red[1], red[2],
+                          red[3], red[4], red[5], red[6], next),
+              numbers, next < appreciable);
   }
   return {"fig2_decay",
           "Fig. 2",
           "only the first few singular values matter",
           "the 4th is below 1 % of the first in every channel",
-          fmt::format("{}", fmt::join(texts, "<br>")),
-          verdict_of(holds_for, fails_for),
-          numbers};
+          found.measured(),
+          found.verdict(),
+          found.numbers()};
 }
 
 Claim energy(const Study& study) {
-  std::vector<std::string> texts;
-  nlohmann::ordered_json numbers;
-  double least = 1;
+  Evidence found;
   for (const Medium& medium : study.media) {
     std::vector<double> shares;
     for (int c = 0; c < 3; ++c) {
       const Eigen::VectorXd& values = medium.svd.values[c];
       shares.push_back(values[0] * values[0] / values.squaredNorm());
-      least = std::min(least, shares.back());
     }
-    numbers[medium.sample.name] = shares;
-    texts.push_back(fmt::format("{}: {}", medium.sample.name, percents(shares)));
+    found.add(medium.sample.name, percents(shares), shares, *std::min_element(shares.begin(), shares.end()) > 0.5);
   }
   return {"sec3_first_value",
           "Section 3",
           "most of the kernel's energy is in the first singular value",
           "over half the sum of squares in every channel",
-          fmt::format("red, green, blue:<br>{}", fmt::join(texts, "<br>")),
-          verdict_of(least > 0.5),
-          numbers};
+          found.measured("red, green, blue:"),
+          found.verdict(),
+          found.numbers()};
 }
 
 }  // namespace

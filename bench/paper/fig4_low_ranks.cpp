@@ -1,12 +1,11 @@
-// Figure 4: the truncated singular value decomposition, and what else so many terms can do.
+// Figure 4: the truncated singular value decomposition, beside other sums of as many terms.
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "paper/plot.hpp"
 #include "paper/study.hpp"
+#include "report/panel.hpp"
 
 namespace dermis::bench {
 
@@ -35,7 +34,7 @@ Panel slices(const Medium& medium) {
       for (int i = 0; i * step_mm <= range_mm; ++i) {
         const double ratio = light(i, diagonal ? i : 0) / exact(i, diagonal ? i : 0);
         // A logarithm shows neither zero nor less.
-        if (ratio > 0) curve.points.emplace_back(i * step_mm, ratio);
+        if (ratio > 0) curve.add(i * step_mm, ratio);
       }
       panel.curves.push_back(curve);
     }
@@ -55,8 +54,8 @@ Panel errors_by_rank(const Study& study) {
     Curve as_is{medium.sample.name, fmt::format("linespoints lc rgb '{}' lw 2 pt 7 ps 0.6", medium_colours[m]), {}};
     Curve renormalised{"", fmt::format("linespoints lc rgb '{}' lw 2 dt 2 pt 6 ps 0.6", medium_colours[m]), {}};
     for (int rank = 1; rank <= most_ranks; ++rank) {
-      as_is.points.emplace_back(rank, study.natural.rel_l2(medium.svd.truncated(rank), medium.sample));
-      renormalised.points.emplace_back(rank, study.natural.rel_l2(medium.svd.renormalised(rank), medium.sample));
+      as_is.add(rank, study.natural.rel_l2(medium.svd.truncated(rank), medium.sample));
+      renormalised.add(rank, study.natural.rel_l2(medium.svd.renormalised(rank), medium.sample));
     }
     panel.curves.push_back(as_is);
     panel.curves.push_back(renormalised);
@@ -66,10 +65,7 @@ Panel errors_by_rank(const Study& study) {
 }
 
 Claim rank_1(const Study& study) {
-  std::vector<std::string> holds_for;
-  std::vector<std::string> fails_for;
-  std::vector<std::string> texts;
-  nlohmann::ordered_json numbers;
+  Evidence found;
   for (const Medium& medium : study.media) {
     const Products as_is = medium.svd.truncated(1);
     std::vector<double> lost;
@@ -77,52 +73,46 @@ Claim rank_1(const Study& study) {
     const double error = study.natural.rel_l2(as_is, medium.sample);
     const double renormalised = study.natural.rel_l2(medium.svd.renormalised(1), medium.sample);
     const double pre_integrated = study.natural.rel_l2(medium.rank_1, medium.sample);
-    numbers[medium.sample.name] = {{"light_lost", lost},
-                                   {"natural", error},
-                                   {"natural_renormalised", renormalised},
-                                   {"natural_pre_integrated", pre_integrated}};
-    texts.push_back(fmt::format("{}: light lost {} (red, green, blue); error {}, scaled {}, pre-integrated {}",
-                                medium.sample.name, percents(lost), percent(error), percent(renormalised),
-                                percent(pre_integrated)));
-    (renormalised > pre_integrated && error > pre_integrated ? holds_for : fails_for).push_back(medium.sample.name);
+    found.add(medium.sample.name,
+              fmt::format("light lost {} (red, green, blue); error {}, scaled {}, pre-integrated {}", percents(lost),
+                          percent(error), percent(renormalised), percent(pre_integrated)),
+              {{"light_lost", lost},
+               {"natural", error},
+               {"natural_renormalised", renormalised},
+               {"natural_pre_integrated", pre_integrated}},
+              renormalised > pre_integrated && error > pre_integrated);
   }
   return {"fig4_rank1",
           "Fig. 4, Section 3",
           "SVD of rank 1 is poor and loses light, even if scaled to keep it",
           "as is and scaled, further off than pre-integration on natural pictures",
-          fmt::format("{}", fmt::join(texts, "<br>")),
-          verdict_of(holds_for, fails_for),
-          numbers};
+          found.measured(),
+          found.verdict(),
+          found.numbers()};
 }
 
 Claim ranks_3_and_6(const Study& study) {
   const Medium& skin = study.skin();
-  std::vector<std::string> texts;
-  nlohmann::ordered_json numbers;
-  bool good = true;
+  Evidence found;
   for (const int rank : {3, 6}) {
     const Products products = skin.svd.truncated(rank);
     const double natural = study.natural.rel_l2(products, skin.sample);
     const double dot = study.dot.rel_l2(products, skin.sample);
-    good = good && natural <= good_enough && dot <= good_enough;
-    numbers[fmt::format("rank_{}", rank)] = {{"natural", natural}, {"dot", dot}};
-    texts.push_back(fmt::format("rank {}: natural {}, dot {}", rank, percent(natural), percent(dot)));
+    found.add(fmt::format("rank {}", rank), fmt::format("natural {}, dot {}", percent(natural), percent(dot)),
+              {{"natural", natural}, {"dot", dot}}, natural <= good_enough && dot <= good_enough);
   }
   return {"fig4_rank3_rank6",
           "Fig. 4",
           "skin: SVD of rank 3 and 6 is faithful (six Gaussians have rank 6)",
           "as is, at most 1 % off on natural pictures and on a dot",
-          fmt::format("{}", fmt::join(texts, "<br>")),
-          verdict_of(good),
-          numbers};
+          found.measured(),
+          found.verdict(),
+          found.numbers()};
 }
 
 Claim rank_3_suffices(const Study& study) {
   constexpr int rank = 3;
-  std::vector<std::string> holds_for;
-  std::vector<std::string> fails_for;
-  std::vector<std::string> texts;
-  nlohmann::ordered_json numbers;
+  Evidence found;
   for (const Medium& medium : study.media) {
     const Products as_is = medium.svd.truncated(rank);
     const Products scaled = medium.svd.renormalised(rank);
@@ -132,29 +122,27 @@ Claim rank_3_suffices(const Study& study) {
     const double dot_scaled = study.dot.rel_l2(scaled, medium.sample);
     int enough = 1;
     while (study.natural.rel_l2(medium.svd.truncated(enough), medium.sample) > good_enough) ++enough;
-    numbers[medium.sample.name] = {{"natural", natural},
-                                   {"natural_renormalised", natural_scaled},
-                                   {"dot", dot},
-                                   {"dot_renormalised", dot_scaled},
-                                   {"rank_for_1_percent", enough}};
-    texts.push_back(fmt::format("{}: natural {} (scaled {}), dot {} (scaled {}); 1 % takes rank {}", medium.sample.name,
-                                percent(natural), percent(natural_scaled), percent(dot), percent(dot_scaled), enough));
-    (natural <= good_enough ? holds_for : fails_for).push_back(medium.sample.name);
+    found.add(medium.sample.name,
+              fmt::format("natural {} (scaled {}), dot {} (scaled {}); 1 % takes rank {}", percent(natural),
+                          percent(natural_scaled), percent(dot), percent(dot_scaled), enough),
+              {{"natural", natural},
+               {"natural_renormalised", natural_scaled},
+               {"dot", dot},
+               {"dot_renormalised", dot_scaled},
+               {"rank_for_1_percent", enough}},
+              natural <= good_enough);
   }
   return {"sec7_rank3",
           "Section 7",
           "SVD of rank 3 or more suffices",
           "rank 3 as is, at most 1 % off on natural pictures",
-          fmt::format("{}", fmt::join(texts, "<br>")),
-          verdict_of(holds_for, fails_for),
-          numbers};
+          found.measured(),
+          found.verdict(),
+          found.numbers()};
 }
 
 Claim against_gaussians(const Study& study) {
-  std::vector<std::string> holds_for;
-  std::vector<std::string> fails_for;
-  std::vector<std::string> texts;
-  nlohmann::ordered_json numbers;
+  Evidence found;
   for (const Medium& medium : study.media) {
     bool better = true;
     std::vector<double> as_is;
@@ -166,26 +154,22 @@ Claim against_gaussians(const Study& study) {
       gaussians.push_back(study.natural.rel_l2(dense_model(medium.sample, Model::gaussians, rank), medium.sample));
       better = better && std::min(as_is.back(), scaled.back()) < gaussians.back();
     }
-    numbers[medium.sample.name] = {{"svd", as_is}, {"svd_renormalised", scaled}, {"gaussians", gaussians}};
-    texts.push_back(fmt::format("{}: SVD {}; scaled {}; Gaussians {}", medium.sample.name, percents(as_is),
-                                percents(scaled), percents(gaussians)));
-    (better ? holds_for : fails_for).push_back(medium.sample.name);
+    found.add(medium.sample.name,
+              fmt::format("SVD {}; scaled {}; Gaussians {}", percents(as_is), percents(scaled), percents(gaussians)),
+              {{"svd", as_is}, {"svd_renormalised", scaled}, {"gaussians", gaussians}}, better);
   }
   return {"abstract_svd_beats_gaussians",
           "Abstract, Section 8",
           "SVD does better than a sum of as many Gaussians",
           "closer on natural pictures at 1, 2, 3 and 4 terms, as is or scaled, than the Gaussians that dermis fits for "
           "least error on such pictures (the paper's were fitted to the profile)",
-          fmt::format("1 to 4 terms:<br>{}", fmt::join(texts, "<br>")),
-          verdict_of(holds_for, fails_for),
-          numbers};
+          found.measured("1 to 4 terms:"),
+          found.verdict(),
+          found.numbers()};
 }
 
 Claim corrections(const Study& study) {
-  std::vector<std::string> holds_for;
-  std::vector<std::string> fails_for;
-  std::vector<std::string> texts;
-  nlohmann::ordered_json numbers;
+  Evidence found;
   for (const Medium& medium : study.media) {
     bool better = true;
     std::vector<double> corrected;
@@ -195,23 +179,23 @@ Claim corrections(const Study& study) {
       svd.push_back(study.natural.rel_l2(medium.svd.renormalised(rank), medium.sample));
       better = better && corrected.back() < svd.back();
     }
-    numbers[medium.sample.name] = {{"pre_integrated_and_corrections", corrected}, {"svd_renormalised", svd}};
-    texts.push_back(fmt::format("{}: {} against {}", medium.sample.name, percents(corrected), percents(svd)));
-    (better ? holds_for : fails_for).push_back(medium.sample.name);
+    found.add(medium.sample.name, fmt::format("{} against {}", percents(corrected), percents(svd)),
+              {{"pre_integrated_and_corrections", corrected}, {"svd_renormalised", svd}}, better);
   }
   return {"sec7_corrections",
           "Section 7, future work",
           "low-rank terms for what pre-integration misses may do better than SVD",
           "dermis' ranks 2 and 3 closer on natural pictures than scaled SVD of the same rank",
-          fmt::format("ranks 2, 3:<br>{}", fmt::join(texts, "<br>")),
-          verdict_of(holds_for, fails_for),
-          numbers};
+          found.measured("ranks 2, 3:"),
+          found.verdict(),
+          found.numbers()};
 }
 
 }  // namespace
 
 Claims fig4(const Study& study) {
-  draw(study.folder / "fig4.svg", {slices(study.media[0]), slices(study.media[1]), errors_by_rank(study)}, 3);
+  draw("--paper", study.folder / "fig4.svg", {slices(study.media[0]), slices(study.media[1]), errors_by_rank(study)},
+       3);
   return {rank_1(study), ranks_3_and_6(study), rank_3_suffices(study), against_gaussians(study), corrections(study)};
 }
 

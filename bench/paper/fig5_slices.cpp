@@ -5,14 +5,12 @@
 #include <cmath>
 #include <numbers>
 
-#include "paper/plot.hpp"
 #include "paper/study.hpp"
+#include "report/panel.hpp"
 
 namespace dermis::bench {
 
 namespace {
-
-constexpr std::array<const char*, 3> channel_names = {"red", "green", "blue"};
 
 /// Pixels from the middle to a distance, along an axis or a diagonal.
 int pixels_to(double r_mm, double pixel_mm, bool diagonal) {
@@ -38,8 +36,8 @@ Panel slice(const Medium& medium, int channel, bool diagonal) {
     const int at = std::abs(i);
     const int other = diagonal ? at : 0;
     const double r_mm = i * pixel_mm * (diagonal ? std::numbers::sqrt2 : 1);
-    exact.points.emplace_back(r_mm, medium.sample.exact[channel](at, other) / area_mm2);
-    approximate.points.emplace_back(r_mm, a[at] * a[other] / area_mm2);
+    exact.add(r_mm, medium.sample.exact[channel](at, other) / area_mm2);
+    approximate.add(r_mm, a[at] * a[other] / area_mm2);
   }
   return {fmt::format("{}: {} slice, {}", medium.sample.name, diagonal ? "diagonal" : "axis", channel_names[channel]),
           "set logscale y\nset yrange [1e-10:1e4]\nset xrange [-10:10]\nset format y '10^{%T}'\n"
@@ -49,10 +47,7 @@ Panel slice(const Medium& medium, int channel, bool diagonal) {
 
 Claim slices_differ(const Study& study) {
   constexpr double factor = 2;
-  std::vector<std::string> holds_for;
-  std::vector<std::string> fails_for;
-  std::vector<std::string> texts;
-  nlohmann::ordered_json numbers;
+  Evidence found;
   for (const Medium& medium : study.media) {
     const Sample& sample = medium.sample;
     const int channel = sample.profile.widest_channel();
@@ -62,7 +57,7 @@ Claim slices_differ(const Study& study) {
       const int on_diagonal = pixels_to(i * sample.pixel_mm, sample.pixel_mm, true);
       largest = std::max(largest, ratio(medium, channel, i, false) / ratio(medium, channel, on_diagonal, true));
     }
-    nlohmann::ordered_json at;
+    Json at;
     std::vector<std::string> pairs;
     for (const double share : {0.5, 0.9, 0.99, 0.999}) {
       const double r_mm = sample.profile.radius(channel, share);
@@ -71,20 +66,18 @@ Claim slices_differ(const Study& study) {
       at.push_back({{"r_mm", r_mm}, {"light_within", share}, {"axis", axis}, {"diagonal", diagonal}});
       pairs.push_back(fmt::format("{:.2g} mm {:.2g} / {:.2g}", r_mm, axis, diagonal));
     }
-    numbers[sample.name] = {
-        {"channel", channel_names[channel]}, {"over_exact", at}, {"largest_axis_over_diagonal", largest}};
-    texts.push_back(fmt::format("{} {}: {}", sample.name, channel_names[channel], fmt::join(pairs, ", ")));
-    (largest > factor ? holds_for : fails_for).push_back(sample.name);
+    found.add(sample.name, fmt::format("{}, {}", channel_names[channel], fmt::join(pairs, ", ")),
+              {{"channel", channel_names[channel]}, {"over_exact", at}, {"largest_axis_over_diagonal", largest}},
+              largest > factor);
   }
-  return {"fig5_slices",
-          "Fig. 5",
-          "the pre-integrated kernel is not round: its axis and diagonal slices differ",
-          "by more than 2 times somewhere within 99.9 % of the light",
-          fmt::format(
-              "over the exact kernel along axis / diagonal, where 50, 90, 99, 99.9 % of the light lie within:<br>{}",
-              fmt::join(texts, "<br>")),
-          verdict_of(holds_for, fails_for),
-          numbers};
+  return {
+      "fig5_slices",
+      "Fig. 5",
+      "the pre-integrated kernel is not round: its axis and diagonal slices differ",
+      "by more than 2 times somewhere within 99.9 % of the light",
+      found.measured("over the exact kernel along axis / diagonal, where 50, 90, 99, 99.9 % of the light lie within:"),
+      found.verdict(),
+      found.numbers()};
 }
 
 }  // namespace
@@ -94,7 +87,7 @@ Claims fig5(const Study& study) {
   for (const bool diagonal : {false, true}) {
     for (int c = 0; c < 3; ++c) panels.push_back(slice(study.skin(), c, diagonal));
   }
-  draw(study.folder / "fig5.svg", panels, 3);
+  draw("--paper", study.folder / "fig5.svg", panels, 3);
   return {slices_differ(study)};
 }
 

@@ -1,4 +1,4 @@
-#include "paper/step.hpp"
+#include "paper/step_response.hpp"
 
 #include <algorithm>
 

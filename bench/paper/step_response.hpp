@@ -5,13 +5,13 @@
 
 namespace dermis::bench {
 
-/// What a step becomes, per channel, at the pixels of a row.
+/// The light of a step after scattering, per channel, at the pixels of a row.
 using StepResponses = std::array<Eigen::VectorXd, 3>;
 
 StepResponses step_responses(const Products& products);
 StepResponses step_responses(const Sample& sample);
 
-/// The largest difference between the two, in the worst channel.
+/// The largest difference between the responses of both, in the worst channel.
 double max_step_error(const Products& products, const Sample& sample);
 
 /// The marginal of a preset of Table 2 on every pixel.

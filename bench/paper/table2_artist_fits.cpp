@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "paper/step.hpp"
+#include "paper/step_response.hpp"
 #include "paper/study.hpp"
 
 namespace dermis::bench {
@@ -13,10 +13,10 @@ namespace {
 
 constexpr double range_mm = 4;  // on both sides of the step
 
-/// One row of Table 2, or what stands in for it, against the skin profile.
+/// One row of Table 2, or a fit in its place, against the skin profile.
 struct ArtistFit {
   std::vector<double> step_max;  ///< per channel
-  double largest;                ///< of them
+  double largest;                ///< of the three
   double step_rms;               ///< over all channels and 4 mm on both sides
   double natural;
 };
@@ -44,7 +44,7 @@ std::string artist_verdict(const ArtistFit& fit, const ArtistFit& other) {
   return on_average && !at_worst ? "holds on average, not for the largest error" : verdict_of(on_average && at_worst);
 }
 
-/// The length that the table's unit would have to be for the largest error of a step to be least, and that error.
+/// The length of the table's unit that makes the largest error of a step least, and that error.
 std::pair<double, double> best_unit_mm(const Sample& sample) {
   std::pair best{1.0, 1.0};
   for (int i = -70; i <= 70; ++i) {
@@ -66,7 +66,7 @@ Claims table2(const Study& study) {
   const double pre_integrated = study.natural.rel_l2(study.skin().rank_1, sample);
   const auto [unit_mm, unit_error] = best_unit_mm(sample);
   const auto numbers = [](const ArtistFit& fit) {
-    return nlohmann::ordered_json{{"step_max", fit.step_max}, {"step_rms", fit.step_rms}, {"natural", fit.natural}};
+    return Json{{"step_max", fit.step_max}, {"step_rms", fit.step_rms}, {"natural", fit.natural}};
   };
   const auto text = [](const ArtistFit& fit) {
     return fmt::format("step {} (red, green, blue), RMS {}, natural {}", percents(fit.step_max), percent(fit.step_rms),

@@ -66,14 +66,15 @@ bool is_default_caller(const Row& row) {
 }
 
 std::vector<Curve> curves_of(const Measurement& measurement, const Choice& belongs, const Value& x, const Value& y,
-                              const std::function<std::string(const Row&)>& label) {
+                             const std::function<std::string(const Row&)>& label) {
   std::vector<Curve> all;
   for (const Row& row : measurement.rows) {
     if (!is_default_caller(row) || !belongs(row)) continue;
     const Look look = look_of(row.what);
     auto its = std::find_if(all.begin(), all.end(), [&](const Curve& one) { return one.title == look.title; });
     if (its == all.end()) {
-      const bool is_below = look.title == std::string_view("dermis, rank 1") || look.title == std::string_view("dermis, rank 3");
+      const bool is_below =
+          look.title == std::string_view("dermis, rank 1") || look.title == std::string_view("dermis, rank 3");
       all.push_back({.title = look.title,
                      .style = line_style(look.colour, look.point_type),
                      .label_style = label_style(look.colour, is_below)});

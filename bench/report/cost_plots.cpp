@@ -14,8 +14,8 @@ bool is_default_method(const Case& what) {
 }
 
 /// Time over something else, of the rows that `belongs` picks.
-Panel cost(const Measurement& measurement, const std::string& title, const std::string& settings,
-           const Choice& belongs, const Value& x) {
+Panel cost(const Measurement& measurement, const std::string& title, const std::string& settings, const Choice& belongs,
+           const Value& x) {
   return {.title = title,
           .settings = fmt::format("{}set ylabel 'time, ms'\nset ytics {}\n{}", axes, round_tics, settings),
           .curves = curves_of(
@@ -31,9 +31,10 @@ Panel cost_width(const Measurement& measurement, Geometry geometry) {
     return is_scene && is_method && row.what.design.count == (row.what.tolerance > 0 ? row.what.design.count : 17) &&
            row.what.family != Family::opencv_bilateral;
   };
-  return cost(measurement, geometry == Geometry::flat ? "flat, 1920x1080" : "three spheres, 1920x1080",
-              "set xlabel 'standard deviation of the widest Gaussian, px'\nset xtics (8,16,32,64,120)\nset xrange [7:137]",
-              belongs, [](const Row& row) { return row.what.scene.kernel_px; });
+  return cost(
+      measurement, geometry == Geometry::flat ? "flat, 1920x1080" : "three spheres, 1920x1080",
+      "set xlabel 'standard deviation of the widest Gaussian, px'\nset xtics (8,16,32,64,120)\nset xrange [7:137]",
+      belongs, [](const Row& row) { return row.what.scene.kernel_px; });
 }
 
 Panel cost_coverage(const Measurement& measurement) {
@@ -45,9 +46,10 @@ Panel cost_coverage(const Measurement& measurement) {
   };
   // 0 stands at the left edge of the logarithmic axis.
   static constexpr double nothing = 0.3;
-  Panel panel = cost(measurement, "three spheres, 1920x1080, 17 taps; below 100 % in place",
-                     "set xlabel 'pixels that scatter, %'\nset xtics ('0' 0.3,1,10,50,100)\nset xrange [0.25:130]", belongs,
-                     [](const Row& row) { return std::max<double>(nothing, row.what.scene.coverage_percent); });
+  Panel panel =
+      cost(measurement, "three spheres, 1920x1080, 17 taps; below 100 % in place",
+           "set xlabel 'pixels that scatter, %'\nset xtics ('0' 0.3,1,10,50,100)\nset xrange [0.25:130]", belongs,
+           [](const Row& row) { return std::max<double>(nothing, row.what.scene.coverage_percent); });
   for (const Row& row : measurement.rows) {
     if (row.what.family != Family::dermis || !belongs(row) || row.what.scene != SceneSpec()) continue;
     panel.curves.push_back({.title = "in proportion to the pixels",
@@ -69,7 +71,8 @@ Panel cost_pixels(const Measurement& measurement) {
   };
   const auto megapixels = [](const Row& row) { return 1e-6 * row.what.scene.width * row.what.scene.height; };
   Panel panel = cost(measurement, "full coverage, 17 taps",
-                     "set xlabel 'frame, px'\nset xtics ('960x540' 0.5184,'1920x1080' 2.0736,'3840x2160' 8.2944)\nset xrange [0.45:9.5]",
+                     "set xlabel 'frame, px'\nset xtics ('960x540' 0.5184,'1920x1080' 2.0736,'3840x2160' 8.2944)\nset "
+                     "xrange [0.45:9.5]",
                      belongs, megapixels);
   Curve copy = {.title = "copy", .style = line_style("#999999", 7, 2)};
   for (const auto& [size, ms] : measurement.copy_ms) {

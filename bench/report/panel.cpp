@@ -13,7 +13,8 @@ namespace {
 using program::script_string;
 
 bool has_points(const Panel& panel) {
-  return std::any_of(panel.curves.begin(), panel.curves.end(), [](const Curve& curve) { return !curve.points.empty(); });
+  return std::any_of(panel.curves.begin(), panel.curves.end(),
+                     [](const Curve& curve) { return !curve.points.empty(); });
 }
 
 std::string script_of(const Panel& panel, int number) {
@@ -45,8 +46,7 @@ void draw(std::string_view option, const std::filesystem::path& path, std::vecto
   const int rows = (static_cast<int>(panels.size()) + columns - 1) / columns;
   std::string script = fmt::format("set multiplot layout {},{}\n", rows, columns);
   for (std::size_t i = 0; i < panels.size(); ++i) script += script_of(panels[i], static_cast<int>(i));
-  program::draw_figure(option, path,
-                       {columns * size.width_px, rows * size.height_px, "dynamic font 'Helvetica,14'"},
+  program::draw_figure(option, path, {columns * size.width_px, rows * size.height_px, "dynamic font 'Helvetica,14'"},
                        script + "unset multiplot\n");
 }
 

@@ -19,6 +19,8 @@ struct Curve {
   std::string style;  ///< what follows "with"
   std::vector<Point> points = {};
   std::string label_style = {};  ///< what follows "with labels"; labels are left out if empty
+
+  void add(double x, double y) { points.push_back({x, y}); }
 };
 
 /// One set of axes.

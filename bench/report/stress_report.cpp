@@ -27,8 +27,8 @@ std::string table_of(const std::vector<StressRow>& rows) {
   for (const StressRow& row : rows) {
     table +=
         fmt::format("| {}: {} | {} | {} | {} | {} | {} | {} | {} | {} | {} |\n", row.group, row.name, cell(row.rel_l2),
-                    cell(row.max_rel), cell(row.max_ulp), cell(row.of_bound), cell(row.energy),
-                    cell(row.overshoot), row.non_finite, row.promised, row.holds() ? "yes" : "**no**: " + row.failure);
+                    cell(row.max_rel), cell(row.max_ulp), cell(row.of_bound), cell(row.energy), cell(row.overshoot),
+                    row.non_finite, row.promised, row.holds() ? "yes" : "**no**: " + row.failure);
   }
   return table;
 }
@@ -59,7 +59,7 @@ Curve curve_of(const std::vector<StressRow>& rows, const char* title, const char
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const double value = rows[i].*number;
     if (std::isnan(value)) continue;
-    curve.points.push_back({std::max(value, least_shown), -static_cast<double>(i)});
+    curve.add(std::max(value, least_shown), -static_cast<double>(i));
   }
   return curve;
 }
@@ -93,10 +93,9 @@ Panel panel_of(const std::vector<SumRow>& rows) {
   for (const SumRow& row : rows) {
     const auto* const place = std::find(shown.begin(), shown.end(), row.how);
     if (place == shown.end()) continue;
-    Curve curve{row.how,
-                fmt::format("linespoints lc rgb '{}' pt {} ps 0.6 lw 1.5", colours[place - shown.begin()],
-                            place - shown.begin() + 4)};
-    for (std::size_t s = 0; s < sum_sizes.size(); ++s) curve.points.push_back({static_cast<double>(sum_sizes[s]), row.rms[s]});
+    Curve curve{row.how, fmt::format("linespoints lc rgb '{}' pt {} ps 0.6 lw 1.5", colours[place - shown.begin()],
+                                     place - shown.begin() + 4)};
+    for (std::size_t s = 0; s < sum_sizes.size(); ++s) curve.add(sum_sizes[s], row.rms[s]);
     panel.curves.push_back(curve);
   }
   return panel;

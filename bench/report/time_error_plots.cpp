@@ -65,10 +65,9 @@ Panel time_error_of_picture(const Measurement& measurement) {
   for (std::size_t i = 0; i + 1 < measurement.parts.size(); ++i) {
     for (std::size_t k = 0; k < series.size(); ++k) {
       const char* colour = picture_colours[i % std::size(picture_colours)];
-      Curve curve = {
-          .title = measurement.parts[i].name + ", " + series[k],
-          .style = line_style(colour, 5 + 2 * static_cast<int>(i % 3), 1 + static_cast<int>(k)),
-          .label_style = label_style(colour)};
+      Curve curve = {.title = measurement.parts[i].name + ", " + series[k],
+                     .style = line_style(colour, 5 + 2 * static_cast<int>(i % 3), 1 + static_cast<int>(k)),
+                     .label_style = label_style(colour)};
       for (const Row& row : measurement.rows) {
         const Case& what = row.what;
         if (what.series() != series[k]) continue;

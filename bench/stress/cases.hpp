@@ -17,7 +17,6 @@ void add_bad_light_cases(std::vector<StressRow>& rows, const Device& device, con
                          std::mt19937& engine);
 void add_width_cases(std::vector<StressRow>& rows, const Device& device, std::mt19937& engine);
 
-
 /// Depth that is none: background.
 StressRow missing_depth(const StressFilter& deep, const StressField& field, std::mt19937& engine);
 

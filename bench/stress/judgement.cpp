@@ -93,9 +93,7 @@ long changed_values(const StressResult& seen, const StressField& field) {
 
 }  // namespace
 
-void fail(StressRow& row, const std::string& text) {
-  row.failure += (row.failure.empty() ? "" : "; ") + text;
-}
+void fail(StressRow& row, const std::string& text) { row.failure += (row.failure.empty() ? "" : "; ") + text; }
 
 StressRow judged(const StressFilter& filter, const StressField& field, const std::string& group,
                  const std::string& name, const StressPromise& promise, const std::vector<StressWindow>& windows,

@@ -114,8 +114,8 @@ float summed_in_half(const Taps& taps) {
   return mean_by(taps, sum);
 }
 
-/// Does what relaxed math may do: vector sums, and in place of a division a reciprocal that is off by a unit in the last
-/// place.
+/// Does what relaxed math may do: vector sums, and in place of a division a reciprocal that is off by a unit in the
+/// last place.
 float relaxed(const Taps& taps) {
   const float weights = in_lanes(taps.weights, 16);
   const float reciprocal = std::nextafter(1 / weights, 2 / weights);

@@ -181,7 +181,8 @@ TEST_CASE("the filter is as far off on a plane as a tolerance predicts, and with
     const Profile profile = random_profile(random);
     const double radius_px = random.uniform(12, 24);
     const double px_per_mm = radius_px / profile.half_width(profile.widest_channel(), 0.999);
-    const Card card{side_px, px_per_mm, dermis::bench::natural_picture(side_px, test_seed() + 7 + static_cast<unsigned>(round))};
+    const Card card{side_px, px_per_mm,
+                    dermis::bench::natural_picture(side_px, test_seed() + 7 + static_cast<unsigned>(round))};
     // Beyond twice the radius lie some ten thousandths of the light.
     const int margin_px = 2 * static_cast<int>(radius_px);
     constexpr int step = 5;  // the error is smooth: its neighbours say the same
