@@ -1,5 +1,3 @@
-#include "measure/exact_convolution.hpp"
-
 #include <fftw3.h>
 #include <fmt/format.h>
 
@@ -8,6 +6,7 @@
 #include <memory>
 
 #include "measure/pixel_kernel.hpp"
+#include "measure/truth.hpp"
 
 namespace dermis::bench {
 

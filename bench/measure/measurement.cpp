@@ -1,6 +1,7 @@
 #include "measure/measurement.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <numeric>
 #include <random>
@@ -8,7 +9,6 @@
 #include "dermis/error.hpp"
 #include "measure/frame_copy.hpp"
 #include "measure/peak_memory.hpp"
-#include "measure/percentile.hpp"
 #include "measure/start_up.hpp"
 #include "measure/truth.hpp"
 #include "opponents/opponents.hpp"
@@ -23,6 +23,13 @@ using program::time_ms;
 
 /// The share of the progress that is preparation.
 constexpr double preparation = 0.6;
+
+/// The value with `share` of the others below it; 0 if there are no values.
+double percentile(std::vector<double> values, double share) {
+  if (values.empty()) return 0;
+  std::sort(values.begin(), values.end());
+  return values[static_cast<std::size_t>(std::lround(share * static_cast<double>(values.size() - 1)))];
+}
 
 /// Scenes, their truths and devices, each made once.
 class Stage {

@@ -9,8 +9,6 @@
 #include <set>
 
 #include "dermis/error.hpp"
-#include "measure/exact_convolution.hpp"
-#include "measure/near_edges.hpp"
 
 namespace dermis::bench {
 
@@ -101,27 +99,6 @@ Truth TruthMaker::truth_of(const Scene& scene) {
   if (scene.covered == 0) throw Error(ErrorCode::usage, "scene", scene.spec.name(), "pixels that scatter");
   const bool is_whole_plane = scene.spec.geometry == Geometry::flat && scene.spec.coverage_percent == 100;
   return is_whole_plane ? exact_convolution(scene) : surface_integral(scene);
-}
-
-Truth truth_of_picture(const Scene& scene, const std::vector<float>& exact) {
-  Truth truth = {.source = "surface integral", .pixels = {}};
-  for (const std::string& name : scene.material_names) truth.parts.push_back({name, {}});
-  Part edges = {"within 3 px of edges", {}};
-  const std::vector<bool> is_near = near_edges(scene);
-  for (std::size_t pixel = 0; pixel < scene.pixels(); ++pixel) {
-    const auto its = std::find_if(scene.materials.begin(), scene.materials.end(), [&](const Material& material) {
-      return static_cast<float>(material.id) == scene.ids[pixel];
-    });
-    if (its == scene.materials.end()) continue;
-    truth.parts[its - scene.materials.begin()].places.push_back(truth.pixels.size());
-    if (is_near[pixel]) edges.places.push_back(truth.pixels.size());
-    truth.pixels.push_back(pixel);
-    for (std::size_t c = 0; c < 3; ++c) {
-      truth.light.push_back(static_cast<double>(exact[c * scene.pixels() + pixel]));
-    }
-  }
-  truth.parts.push_back(std::move(edges));
-  return truth;
 }
 
 Distance distance(const std::vector<float>& result, const Truth& truth) {

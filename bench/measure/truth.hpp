@@ -45,6 +45,10 @@ class TruthMaker {
   std::optional<Plan> exact_;  ///< serves frames of any size
 };
 
+/// The truth of a flat scene: the convolution of the whole plane with the profile on pixels, by FFT in double
+/// precision, at the pixels that do not see the frame's edge.
+Truth exact_convolution(const Scene& scene);
+
 /// The truth of a picture: the surface integral at all pixels of its materials. `exact`: three planes of the whole
 /// frame, by Method::exact.
 Truth truth_of_picture(const Scene& scene, const std::vector<float>& exact);

@@ -73,12 +73,11 @@ Claims guided(const Study& study) {
                   {{"natural", kernels.natural}, {"natural_pre_integrated", rank_1}},
                   kernels.natural[1] < kernels.natural[0] && kernels.natural[1] < kernels.natural[2]);
   }
-  return {
-      {"appendix_widths", "Appendix A", "guided kernels: k = 0 is sharper than k = 2, k = 4 smoother",
-       "the strip with half of the light widens with k (b = 50, read as 1/mm²)",
-       widths.measured("k = 0, 2, 4, widest channel:"), widths.verdict(), widths.numbers()},
-      {"appendix_k2", "Appendix A", "k = 2 is near the true kernel", "nearer than k = 0 and k = 4 on natural pictures",
-       closeness.measured("k = 0, 2, 4:"), closeness.verdict(), closeness.numbers()}};
+  return {widths.claim("appendix_widths", "Appendix A", "guided kernels: k = 0 is sharper than k = 2, k = 4 smoother",
+                       "the strip with half of the light widens with k (b = 50, read as 1/mm²)",
+                       "k = 0, 2, 4, widest channel:"),
+          closeness.claim("appendix_k2", "Appendix A", "k = 2 is near the true kernel",
+                          "nearer than k = 0 and k = 4 on natural pictures", "k = 0, 2, 4:")};
 }
 
 }  // namespace dermis::bench

@@ -27,8 +27,11 @@ std::string Evidence::verdict() const {
   return fmt::format("holds for {}, not for {}", listed(holds_for_), listed(fails_for_));
 }
 
-std::string Evidence::measured(const std::string& introduction) const {
-  return fmt::format("{}{}{}", introduction, introduction.empty() ? "" : "<br>", fmt::join(texts_, "<br>"));
+Claim Evidence::claim(const std::string& id, const std::string& where, const std::string& text, const std::string& test,
+                      const std::string& introduction) const {
+  const std::string measured =
+      fmt::format("{}{}{}", introduction, introduction.empty() ? "" : "<br>", fmt::join(texts_, "<br>"));
+  return {id, where, text, test, measured, verdict(), numbers_};
 }
 
 std::string percent(double share) {

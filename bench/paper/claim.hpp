@@ -28,13 +28,14 @@ class Evidence {
  public:
   void add(const std::string& name, const std::string& text, const Json& numbers, bool holds);
 
-  /// "holds", "does not hold" or which of both for whom.
-  std::string verdict() const;
-  /// The texts, a line each, after `introduction`.
-  std::string measured(const std::string& introduction = "") const;
-  const Json& numbers() const { return numbers_; }
+  /// The claim that they support or not. For the table, `introduction` stands above the texts, a line each; the verdict
+  /// is "holds", "does not hold" or which of both for whom.
+  Claim claim(const std::string& id, const std::string& where, const std::string& text, const std::string& test,
+              const std::string& introduction = "") const;
 
  private:
+  std::string verdict() const;
+
   std::vector<std::string> texts_, holds_for_, fails_for_;
   Json numbers_;
 };

@@ -45,8 +45,7 @@ Panel errors_by_count(const Study& study, const Sample& sample, double width) {
       fmt::format("{}, W = {} px", sample.name, width),
       "set logscale xy\nset yrange [1e-4:0.6]\nset xrange [2.7:72]\nset xtics (3, 5, 7, 11, 17, 25, 33, 49, 65)\n"
       "set format y '10^{%T}'\nset xlabel 'taps per pass'\n"
-      "set ylabel 'relative L2 error on natural pictures'\nset key bottom left",
-      {}};
+      "set ylabel 'relative L2 error on natural pictures'\nset key bottom left"};
   for (const Design& one : designs()) {
     Curve curve{one.title, one.style, {}};
     for (const int count : counts) {
@@ -119,12 +118,11 @@ Claims fig11(const Study& study) {
         numbers, row.importance_added <= row.many);
   }
   return {
-      {"fig11_importance", "Fig. 11", "7 importance-sampled taps do far better than 7 uniform ones",
-       "at most half as far from 513 uniform taps, on natural pictures",
-       better.measured("distance from 513 uniform taps:"), better.verdict(), better.numbers()},
-      {"fig11_seven_taps", "Fig. 11, Section 6", "7 importance-sampled taps are faithful",
-       "they are no further from 513 uniform taps than those are from the exact convolution",
-       faithful.measured("error of 7 taps against the exact convolution:"), faithful.verdict(), faithful.numbers()}};
+      better.claim("fig11_importance", "Fig. 11", "7 importance-sampled taps do far better than 7 uniform ones",
+                   "at most half as far from 513 uniform taps, on natural pictures", "distance from 513 uniform taps:"),
+      faithful.claim("fig11_seven_taps", "Fig. 11, Section 6", "7 importance-sampled taps are faithful",
+                     "they are no further from 513 uniform taps than those are from the exact convolution",
+                     "error of 7 taps against the exact convolution:")};
 }
 
 }  // namespace dermis::bench

@@ -23,8 +23,7 @@ void draw_values(const Study& study) {
     Panel panel{medium.sample.name,
                 "set logscale y\nset yrange [1e-6:1.5]\nset xrange [0:21]\nset format y '10^{%T}'\n"
                 "set xlabel 'number of the singular value'\n"
-                "set ylabel 'size, relative to the first'",
-                {}};
+                "set ylabel 'size, relative to the first'"};
     for (int c = 0; c < 3; ++c) {
       Curve curve{channel_names[c], fmt::format("linespoints lc rgb '{}' lw 2 pt 7 ps 0.5", channel_colours[c]), {}};
       for (int i = 0; i < most_values; ++i) {
@@ -57,13 +56,8 @@ Claim decay(const Study& study) {
                           red[3], red[4], red[5], red[6], next),
               numbers, next < appreciable);
   }
-  return {"fig2_decay",
-          "Fig. 2",
-          "only the first few singular values matter",
-          "the 4th is below 1 % of the first in every channel",
-          found.measured(),
-          found.verdict(),
-          found.numbers()};
+  return found.claim("fig2_decay", "Fig. 2", "only the first few singular values matter",
+                     "the 4th is below 1 % of the first in every channel");
 }
 
 Claim energy(const Study& study) {
@@ -76,13 +70,8 @@ Claim energy(const Study& study) {
     }
     found.add(medium.sample.name, percents(shares), shares, *std::min_element(shares.begin(), shares.end()) > 0.5);
   }
-  return {"sec3_first_value",
-          "Section 3",
-          "most of the kernel's energy is in the first singular value",
-          "over half the sum of squares in every channel",
-          found.measured("red, green, blue:"),
-          found.verdict(),
-          found.numbers()};
+  return found.claim("sec3_first_value", "Section 3", "most of the kernel's energy is in the first singular value",
+                     "over half the sum of squares in every channel", "red, green, blue:");
 }
 
 }  // namespace

@@ -19,8 +19,7 @@ Panel slices(const Medium& medium) {
   constexpr double range_mm = 8;
   Panel panel{medium.sample.name + ", red: SVD over exact kernel",
               "set logscale y\nset yrange [3e-3:1000]\nset xrange [0:8]\nset format y '%g'\n"
-              "set xlabel 'distance, mm'\nset ylabel 'ratio'\nset key top left",
-              {}};
+              "set xlabel 'distance, mm'\nset ylabel 'ratio'\nset key top left"};
   const Eigen::MatrixXd& exact = medium.sample.exact[0];
   int colour = 0;
   for (const int rank : {1, 3, 6}) {
@@ -28,8 +27,7 @@ Panel slices(const Medium& medium) {
     const char* line_colour = std::array{colours[0], colours[3], colours[2]}[colour++];
     for (const bool diagonal : {false, true}) {
       Curve curve{diagonal ? "" : fmt::format("rank {}", rank),
-                  fmt::format("lines lc rgb '{}' lw 2{}", line_colour, diagonal ? " dt 2" : ""),
-                  {}};
+                  fmt::format("lines lc rgb '{}' lw 2{}", line_colour, diagonal ? " dt 2" : "")};
       const double step_mm = medium.sample.pixel_mm * (diagonal ? std::numbers::sqrt2 : 1);
       for (int i = 0; i * step_mm <= range_mm; ++i) {
         const double ratio = light(i, diagonal ? i : 0) / exact(i, diagonal ? i : 0);
@@ -46,8 +44,7 @@ Panel slices(const Medium& medium) {
 Panel errors_by_rank(const Study& study) {
   Panel panel{"error on natural pictures",
               "set logscale y\nset yrange [1e-6:1]\nset xrange [0.8:6.2]\nset xtics 1\nset format y '10^{%T}'\n"
-              "set xlabel 'rank'\nset ylabel 'relative L2 error'\nset key bottom left",
-              {}};
+              "set xlabel 'rank'\nset ylabel 'relative L2 error'\nset key bottom left"};
   const char* medium_colours[] = {colours[0], colours[3], colours[2], colours[4]};
   for (std::size_t m = 0; m < study.media.size(); ++m) {
     const Medium& medium = study.media[m];
@@ -82,13 +79,9 @@ Claim rank_1(const Study& study) {
                {"natural_pre_integrated", pre_integrated}},
               renormalised > pre_integrated && error > pre_integrated);
   }
-  return {"fig4_rank1",
-          "Fig. 4, Section 3",
-          "SVD of rank 1 is poor and loses light, even if scaled to keep it",
-          "as is and scaled, further off than pre-integration on natural pictures",
-          found.measured(),
-          found.verdict(),
-          found.numbers()};
+  return found.claim("fig4_rank1", "Fig. 4, Section 3",
+                     "SVD of rank 1 is poor and loses light, even if scaled to keep it",
+                     "as is and scaled, further off than pre-integration on natural pictures");
 }
 
 Claim ranks_3_and_6(const Study& study) {
@@ -101,13 +94,8 @@ Claim ranks_3_and_6(const Study& study) {
     found.add(fmt::format("rank {}", rank), fmt::format("natural {}, dot {}", percent(natural), percent(dot)),
               {{"natural", natural}, {"dot", dot}}, natural <= good_enough && dot <= good_enough);
   }
-  return {"fig4_rank3_rank6",
-          "Fig. 4",
-          "skin: SVD of rank 3 and 6 is faithful (six Gaussians have rank 6)",
-          "as is, at most 1 % off on natural pictures and on a dot",
-          found.measured(),
-          found.verdict(),
-          found.numbers()};
+  return found.claim("fig4_rank3_rank6", "Fig. 4", "skin: SVD of rank 3 and 6 is faithful (six Gaussians have rank 6)",
+                     "as is, at most 1 % off on natural pictures and on a dot");
 }
 
 Claim rank_3_suffices(const Study& study) {
@@ -132,13 +120,8 @@ Claim rank_3_suffices(const Study& study) {
                {"rank_for_1_percent", enough}},
               natural <= good_enough);
   }
-  return {"sec7_rank3",
-          "Section 7",
-          "SVD of rank 3 or more suffices",
-          "rank 3 as is, at most 1 % off on natural pictures",
-          found.measured(),
-          found.verdict(),
-          found.numbers()};
+  return found.claim("sec7_rank3", "Section 7", "SVD of rank 3 or more suffices",
+                     "rank 3 as is, at most 1 % off on natural pictures");
 }
 
 Claim against_gaussians(const Study& study) {
@@ -158,14 +141,11 @@ Claim against_gaussians(const Study& study) {
               fmt::format("SVD {}; scaled {}; Gaussians {}", percents(as_is), percents(scaled), percents(gaussians)),
               {{"svd", as_is}, {"svd_renormalised", scaled}, {"gaussians", gaussians}}, better);
   }
-  return {"abstract_svd_beats_gaussians",
-          "Abstract, Section 8",
-          "SVD does better than a sum of as many Gaussians",
-          "closer on natural pictures at 1, 2, 3 and 4 terms, as is or scaled, than the Gaussians that dermis fits for "
-          "least error on such pictures (the paper's were fitted to the profile)",
-          found.measured("1 to 4 terms:"),
-          found.verdict(),
-          found.numbers()};
+  return found.claim(
+      "abstract_svd_beats_gaussians", "Abstract, Section 8", "SVD does better than a sum of as many Gaussians",
+      "closer on natural pictures at 1, 2, 3 and 4 terms, as is or scaled, than the Gaussians that dermis fits for "
+      "least error on such pictures (the paper's were fitted to the profile)",
+      "1 to 4 terms:");
 }
 
 Claim corrections(const Study& study) {
@@ -182,13 +162,10 @@ Claim corrections(const Study& study) {
     found.add(medium.sample.name, fmt::format("{} against {}", percents(corrected), percents(svd)),
               {{"pre_integrated_and_corrections", corrected}, {"svd_renormalised", svd}}, better);
   }
-  return {"sec7_corrections",
-          "Section 7, future work",
-          "low-rank terms for what pre-integration misses may do better than SVD",
-          "dermis' ranks 2 and 3 closer on natural pictures than scaled SVD of the same rank",
-          found.measured("ranks 2, 3:"),
-          found.verdict(),
-          found.numbers()};
+  return found.claim("sec7_corrections", "Section 7, future work",
+                     "low-rank terms for what pre-integration misses may do better than SVD",
+                     "dermis' ranks 2 and 3 closer on natural pictures than scaled SVD of the same rank",
+                     "ranks 2, 3:");
 }
 
 }  // namespace

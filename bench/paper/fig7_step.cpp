@@ -61,11 +61,9 @@ void draw_steps(const Study& study, const ErrorsByTerms& errors) {
                   "set yrange [-0.02:1.02]\nset xlabel 'distance from the step, mm'\n"
                   "set ylabel 'light'\nset key bottom right noreverse Right",
               {curve_of("exact", "lines lc rgb '#999999' lw 6", truth[0], 1, sample.pixel_mm)}};
-  Panel off{"how far off",
-            x_range +
-                "set yrange [-10:24]\nset xlabel 'distance from the step, mm'\n"
-                "set ylabel 'error, % of the step'\nset key top left",
-            {}};
+  Panel off{"how far off", x_range +
+                               "set yrange [-10:24]\nset xlabel 'distance from the step, mm'\n"
+                               "set ylabel 'error, % of the step'\nset key top left"};
   for (const NamedKernel& named : all) {
     const StepResponses seen = step_responses(named.products);
     const std::string style = fmt::format("lines lc rgb '{}' lw 2", named.colour);
@@ -78,8 +76,7 @@ void draw_steps(const Study& study, const ErrorsByTerms& errors) {
   Panel terms{"skin: largest error over the number of terms",
               "set logscale y\nset yrange [1e-6:1]\nset xrange [0.8:6.2]\nset xtics 1\nset format y '10^{%T}'\n"
               "set xlabel 'terms (two convolutions each)'\nset ylabel 'largest error, of the step'\n"
-              "set key bottom left",
-              {}};
+              "set key bottom left"};
   const auto add = [&](const char* title, const char* style, const std::vector<double>& values) {
     Curve curve{title, style, {}};
     for (int i = 0; i < most_terms; ++i) curve.add(i + 1, values[i]);
@@ -98,13 +95,8 @@ Claim exact_on_axes(const Study& study) {
     const double error = max_step_error(medium.rank_1, medium.sample);
     found.add(medium.sample.name, fmt::format("{:.1e}", error), error, error <= rounding);
   }
-  return {"fig7_pre_integrated",
-          "Fig. 7, eq. 4",
-          "pre-integration is exact for a step along an axis",
-          "largest error at most 1e-8 of the step, the accuracy of the integrals",
-          found.measured("largest error:"),
-          found.verdict(),
-          found.numbers()};
+  return found.claim("fig7_pre_integrated", "Fig. 7, eq. 4", "pre-integration is exact for a step along an axis",
+                     "largest error at most 1e-8 of the step, the accuracy of the integrals", "largest error:");
 }
 
 Claim several_needed(const Study& study, const ErrorsByTerms& skin) {
@@ -121,13 +113,8 @@ Claim several_needed(const Study& study, const ErrorsByTerms& skin) {
               {{"gaussians", errors.gaussians}, {"svd", errors.svd}, {"svd_renormalised", errors.svd_renormalised}},
               needed(errors.gaussians) > 1 && needed(errors.svd) > 1 && needed(errors.svd_renormalised) > 1);
   }
-  return {"fig7_several_terms",
-          "Fig. 7",
-          "sums of Gaussians and SVD need several terms on a step",
-          "more than one until the largest error is at most 1 % of the step",
-          found.measured("1 to 6 terms:"),
-          found.verdict(),
-          found.numbers()};
+  return found.claim("fig7_several_terms", "Fig. 7", "sums of Gaussians and SVD need several terms on a step",
+                     "more than one until the largest error is at most 1 % of the step", "1 to 6 terms:");
 }
 
 Claim two_convolutions(const Study& study) {
@@ -145,13 +132,9 @@ Claim two_convolutions(const Study& study) {
         {{"natural", natural}, {"natural_gaussian", natural_gaussian}, {"dot", dot}, {"dot_gaussian", dot_gaussian}},
         natural < natural_gaussian);
   }
-  return {"table1_two_convolutions",
-          "Table 1, Fig. 13",
-          "with two convolutions, pre-integration does better than one Gaussian",
-          "closer on natural pictures",
-          found.measured(),
-          found.verdict(),
-          found.numbers()};
+  return found.claim("table1_two_convolutions", "Table 1, Fig. 13",
+                     "with two convolutions, pre-integration does better than one Gaussian",
+                     "closer on natural pictures");
 }
 
 }  // namespace

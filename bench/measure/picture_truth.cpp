@@ -1,11 +1,15 @@
-#include "measure/near_edges.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
+#include "measure/truth.hpp"
+
 namespace dermis::bench {
 
+namespace {
+
+/// True for every pixel within 3 px of an edge: a neighbour has another material id or none, or its depth differs by
+/// more than it would on a surface seen at 80 degrees.
 std::vector<bool> near_edges(const Scene& scene) {
   constexpr int near_px = 3;
   constexpr double steepest = 5.67;  // tangent of 80 degrees
@@ -35,6 +39,29 @@ std::vector<bool> near_edges(const Scene& scene) {
     }
   }
   return is_near;
+}
+
+}  // namespace
+
+Truth truth_of_picture(const Scene& scene, const std::vector<float>& exact) {
+  Truth truth = {.source = "surface integral", .pixels = {}};
+  for (const std::string& name : scene.material_names) truth.parts.push_back({name, {}});
+  Part edges = {"within 3 px of edges", {}};
+  const std::vector<bool> is_near = near_edges(scene);
+  for (std::size_t pixel = 0; pixel < scene.pixels(); ++pixel) {
+    const auto its = std::find_if(scene.materials.begin(), scene.materials.end(), [&](const Material& material) {
+      return static_cast<float>(material.id) == scene.ids[pixel];
+    });
+    if (its == scene.materials.end()) continue;
+    truth.parts[its - scene.materials.begin()].places.push_back(truth.pixels.size());
+    if (is_near[pixel]) edges.places.push_back(truth.pixels.size());
+    truth.pixels.push_back(pixel);
+    for (std::size_t c = 0; c < 3; ++c) {
+      truth.light.push_back(static_cast<double>(exact[c * scene.pixels() + pixel]));
+    }
+  }
+  truth.parts.push_back(std::move(edges));
+  return truth;
 }
 
 }  // namespace dermis::bench
