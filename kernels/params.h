@@ -236,6 +236,48 @@ struct SmoothWeight {
   float skew[3];
 };
 
+// Where the images of Shading lie.
+struct ShadingImages {
+  struct ImageParams position, normal, albedo;       // read
+  struct ImageParams light, seen, specular, beauty;  // written
+};
+
+// What shade does to a frame.
+struct ShadingParams {
+  float viewer[4];  // the eye and 1, or the direction to the viewer, of unit length, and 0
+  int width;
+  int lights;        // how many
+  int writes_light;  // 1 if the frame has the output
+  int writes_seen;
+  int writes_specular;
+  int writes_beauty;
+  struct TableParams beckmann;  // of the square of the tangent
+  float reflectance;            // F0
+  float seen_gain;              // 1 / (1 - rho_mean)
+  float offset_texels;          // points look themselves up in maps so far above the surface
+  float softness_texels;
+};
+
+// Where the images of Translucency lie.
+struct TranslucencyImages {
+  struct ImageParams light, albedo, position, normal, material, mask, thickness, beauty;  // read
+  struct ImageParams lit, result;                                                         // written
+};
+
+// What transmit does to a frame.
+struct TranslucencyParams {
+  int width;
+  int lights;      // how many
+  int writes_lit;  // 1 if the frame has the output
+  int writes_result;
+  int copies_light;  // 1 unless the output lies over that input
+  int copies_beauty;
+  float mm_per_unit;
+  float thickness_scale;
+  float shrink_units;
+  float softness_texels;
+};
+
 // One material of the transmitted light.
 struct SlabParams {
   int id;
@@ -262,7 +304,7 @@ struct LightParams {
   float clip_x[4];  // rows of the view-projection matrix
   float clip_y[4];
   float clip_w[4];
-  float axis[4];      // makes the distance along the view axis of the map of (x, y, z, 1)
+  float axis[4];      // times (x, y, z, 1) is the distance along the view axis of the map
   float depth_of[4];  // the distance of what a texel v shows is (a v + b) / (c v + d)
   float bias;
   float texel;  // larger side of a texel, scene units; of a light with a position, per unit of w
@@ -325,12 +367,29 @@ struct DiscCounts {
 // Lanes of the states of a recursion: 8 times the pole pair, plus 4 times the function, plus the channel.
 #define STATES 16
 
+// What becomes of the light in a block of texels, by channel.
+#define LIT_EMPTY 0  // no texel of an object
+#define LIT_DARK 1   // no light
+#define LIT_BRIGHT 2
+
+// The planes of the Gaussians, each of which has a part in the buffer of what is lit.
+#define PLANE_LIGHT 0
+#define PLANE_BETWEEN 1  // after the pass along u
+#define PLANE_LAST 2     // the Gaussian before
+#define BLUR_PLANES 3
+
 // Counters of a run on a texture.
 #define COUNTER_EMPTY_TEXELS 0
 #define COUNTER_EMPTY_PARTS 1
 #define COUNTER_UNLIT_PARTS 2
 #define COUNTER_FINEST 3  // the smallest stretch, as the bits of a float above 0, which order as it does
 #define TEXTURE_COUNTERS 4
+
+// Where the images of a texture lie.
+struct TextureLayouts {
+  struct ImageParams light, albedo, mask, stretch_u, stretch_v;  // read
+  struct ImageParams scattered, result;                          // written
+};
 
 // One texture.
 struct TextureParams {
@@ -341,19 +400,28 @@ struct TextureParams {
   int blocks_y;
   float mm_per_texel;
   float albedo_mix;
+  int writes_scattered;  // 1 if the frame has the output
+  int writes_result;
 };
 
-// One blur of a channel: see GaussianChain. Where all texels are of one size, the host knows what it consists of.
+// One pass along u, or along v.
+struct TexturePass {
+  struct ImageParams stretch;  // along the pass
+  int along_v;
+  int lines_per_item;  // recursion: rows, or columns, of a work-item
+};
+
+// One blur of a channel: see GaussianChain. The last four are the host's where all texels are of one size.
 struct BlurParams {
   float total_deviation_mm;  // of the Gaussian
-  float variance_mm2;        // of the blur from the last one
+  float variance_mm2;        // of the blur that makes it of the Gaussian before
   float deviation_mm;
-  float weight;  // of the level in the result
+  float weight;  // of the Gaussian in the result
   int is_first;
-  int from_light;
-  int step;  // texels
-  int taps;  // on each side
-  int first_weight;
+  int from_light;    // 1: the blur reads the light, 0: the Gaussian before
+  int step;          // texels between taps
+  int taps;          // on each side
+  int first_weight;  // index
 };
 
 // The pole pairs of one pass: see PolePair and recursion.cl.

@@ -80,7 +80,7 @@ class Picture {
   std::unique_ptr<State> state_;
 };
 
-/// What a channel is for.
+/// What a channel is for. Its name, number of values and description are in role_table.
 enum class Role {
   light,
   albedo,
@@ -94,13 +94,39 @@ enum class Role {
   beauty,
   stretch_u,
   stretch_v,
-  thickness
+  thickness,
 };
-inline constexpr std::array all_roles = {Role::light,     Role::albedo,    Role::depth,    Role::position, Role::normal,
-                                         Role::material,  Role::mask,      Role::matte,    Role::specular, Role::beauty,
-                                         Role::stretch_u, Role::stretch_v, Role::thickness};
 
-std::string_view name_of(Role role);
+/// One row of role_table.
+struct RoleInfo {
+  Role role;
+  std::string_view name;  ///< as a caller spells it
+  std::size_t values;     ///< channels of a group: 3 (RGB or XYZ) or 1
+  std::string_view what;  ///< for help texts
+};
+
+/// All roles, in the order of Role. The names that renderers give the channels are in src/exr/roles.cpp.
+inline constexpr std::array role_table = {
+    RoleInfo{Role::light, "light", 3, "diffuse light, without or with the albedo"},
+    RoleInfo{Role::albedo, "albedo", 3, "diffuse colour"},
+    RoleInfo{Role::depth, "depth", 1, "distance along the view axis, scene units"},
+    RoleInfo{Role::position, "position", 3, "world space, scene units"},
+    RoleInfo{Role::normal, "normal", 3, "world space"},
+    RoleInfo{Role::material, "material", 1, "material ids"},
+    RoleInfo{Role::mask, "mask", 1, "factor of the profile's width"},
+    RoleInfo{Role::matte, "matte", 1, "share of the pixel that its material covers"},
+    RoleInfo{Role::specular, "specular", 3, "highlights"},
+    RoleInfo{Role::beauty, "beauty", 3, "the finished picture"},
+    RoleInfo{Role::stretch_u, "stretch_u", 1, "of a texture: mm of surface per texel along u"},
+    RoleInfo{Role::stretch_v, "stretch_v", 1, "of a texture: mm of surface per texel along v"},
+    RoleInfo{Role::thickness, "thickness", 1, "mm along the normal"},
+};
+
+constexpr const RoleInfo& info_of(Role role) { return role_table[static_cast<std::size_t>(role)]; }
+constexpr std::string_view name_of(Role role) { return info_of(role).name; }
+
+/// The names of all roles with commas between them, for help and messages.
+std::string role_names();
 
 /// The channels of one role: a sum of groups of three (RGB or XYZ) or one.
 using ChannelSum = std::vector<std::vector<std::string>>;
@@ -108,7 +134,7 @@ using ChannelSum = std::vector<std::vector<std::string>>;
 /// Which channels of a picture play which role.
 struct Roles {
   std::string layer;  ///< the view layer, without the dot; may be empty
-  std::array<ChannelSum, all_roles.size()> channels;
+  std::array<ChannelSum, role_table.size()> channels;
 
   const ChannelSum& operator[](Role role) const { return channels[static_cast<std::size_t>(role)]; }
   ChannelSum& operator[](Role role) { return channels[static_cast<std::size_t>(role)]; }
@@ -138,11 +164,11 @@ struct Mattes {
   std::vector<float> share;
 };
 
-/// From all Cryptomatte layers of a picture (channels such as "ViewLayer.CryptoObject00.R", in any case). Throws
+/// Reads all Cryptomatte layers of a picture (channels such as "ViewLayer.CryptoObject00.R", in any case). Throws
 /// Error(role_missing) if there is none or a name covers no pixel, Error(input_unsupported) if ids are not float32.
 Mattes load_cryptomatte(const Picture& picture, std::span<const std::string> names);
 
-/// What the caller says of the camera; at most one of fov and focal.
+/// The caller's word on the camera; at most one of fov and focal.
 struct CameraHint {
   std::optional<double> fov_deg = {};   ///< horizontal, of the display window; in (0, 180)
   std::optional<double> focal_px = {};  ///< along x; > 0

@@ -7,7 +7,7 @@
 
 namespace dermis {
 
-/// How a value of a shadow map says how far away a surface is.
+/// The meaning of a value of a shadow map.
 enum class MapDepth {
   /// Scene units along the map's view axis: from the light's position if the light is a point or a spot; from the plane
   /// through the position of a directional light, at a right angle to its direction.
@@ -15,8 +15,8 @@ enum class MapDepth {
   projective,  ///< z / w of the view-projection matrix
 };
 
-/// What a light sees. Rows go from top to bottom. A texel that shows no surface holds 1e9 and more, infinity, NaN, or
-/// the far plane: nothing lies between the light and a point there.
+/// The depths that a light sees. Rows go from top to bottom. A texel that shows no surface holds 1e9 and more,
+/// infinity, NaN, or the far plane: nothing lies between the light and a point there.
 struct ShadowMap {
   Image depth = {};  ///< 1 channel, f16 or f32; none if the light has no map
   int width = 0;     ///< texels, 1..65536
@@ -26,7 +26,7 @@ struct ShadowMap {
   /// directional light, perspective for the others, with the eye at their position.
   std::array<double, 16> view_projection = {};
   MapDepth kind = MapDepth::linear;
-  double bias_units = 0;  ///< >= 0: what is no farther behind the surface that a texel shows is not in its shadow
+  double bias_units = 0;  ///< >= 0: a point no farther behind the surface that a texel shows is not in its shadow
 };
 
 /// A light, in world space and scene units.
@@ -45,8 +45,8 @@ struct Light {
   std::array<double, 3> colour = {1, 1, 1};
   /// a, b, c >= 0, not all 0: at a distance d the light is its colour / (a + b d + c d^2). Not of a directional light.
   std::array<double, 3> attenuation = {0, 0, 1};
-  /// Of a spot: half angles, degrees, 0 <= inner < outer <= 90. Full light up to the inner one, none from the outer one
-  /// on, between them t^2 (3 - 2 t) with t linear in the cosine.
+  /// Half angles of a spot, degrees, 0 <= inner < outer <= 90. There is full light up to the inner one, none from the
+  /// outer one on, and between them t^2 (3 - 2 t) of it, with t linear in the cosine.
   double cone_inner_deg = 30;
   double cone_outer_deg = 45;
   ShadowMap map = {};

@@ -1,4 +1,4 @@
-/// How far light spreads under a surface: the diffusion profile R(r), one curve per colour channel.
+/// Diffusion profiles R(r), which say how far light spreads under a surface: one curve per colour channel.
 #pragma once
 
 #include <array>
@@ -47,7 +47,7 @@ class Profile {
   /// (Christensen and Burley 2015, eq. 6). `radius_mm` in 1e-9..1e9; `albedo` in [0, 1].
   static Profile burley_cycles(const Rgb& radius_mm, const Rgb& albedo);
 
-  /// The same with the albedo of each pixel: the frame has to carry an albedo image.
+  /// Burley's profile from Cycles' radius and the albedo of each pixel: the frame has to carry an albedo image.
   static Profile burley_cycles(const Rgb& radius_mm);
 
   /// A sum of Gaussians (d'Eon and Luebke 2007, eq. 14.6). At least one term; every channel needs a
@@ -87,11 +87,11 @@ class Profile {
   double edge_tail(int channel, double x_mm) const;
 
   /// Light between two parallel lines: the integral of a over from_mm..to_mm, in which `from_mm` <= `to_mm` and both
-  /// may be infinite. What a pixel of a row weighs. Throws Error(usage) otherwise.
+  /// may be infinite: the weight of a pixel in a row. Throws Error(usage) otherwise.
   double strip(int channel, double from_mm, double to_mm) const;
 
-  /// Light on a rectangle: the integral of R over x0_mm..x1_mm by y0_mm..y1_mm about the point, under the same rule.
-  /// What a pixel of a picture weighs. Good to 1e-8 of its own size for pixels of 1/40 to 20 times d, 1/sigma_tr or a
+  /// Light on a rectangle: the integral of R over x0_mm..x1_mm by y0_mm..y1_mm about the point, under the same rule:
+  /// the weight of a pixel in a picture. Good to 1e-8 of its own size for pixels of 1/40 to 20 times d, 1/sigma_tr or a
   /// standard deviation, down to 1e-12 of the pixel in the middle.
   double rectangle(int channel, double x0_mm, double x1_mm, double y0_mm, double y1_mm) const;
 
@@ -102,11 +102,11 @@ class Profile {
   /// Share of the light of a point that leaves within the distance r (0..1).
   double cdf(int channel, double r_mm) const;
 
-  /// What comes through a slab of thickness s under the same light everywhere behind it: T(s), the integral of
-  /// R(sqrt(r^2
-  /// + s^2)) over the plane (Jimenez et al. 2010, eq. 7; Golubev 2018), which is the light beyond a distance s, 1 -
-  /// cdf(s). For a sum of Gaussians that is the sum of w exp(-s^2 / 2v) (the paper drops the 2), for Burley's profile
-  /// (e^(-s/d) + 3 e^(-s/3d)) / 4. T(0) = 1; T falls monotonically. thickness_mm >= 0, or infinite.
+  /// T(s), the share of the light on one side of a slab of thickness s that leaves on the other, under the same light
+  /// everywhere: the integral of R(sqrt(r^2 + s^2)) over the plane (Jimenez et al. 2010, eq. 7; Golubev 2018), which is
+  /// the light beyond a distance s, 1 - cdf(s). For a sum of Gaussians that is the sum of w exp(-s^2 / 2v) (the paper
+  /// drops the 2), for Burley's profile (e^(-s/d) + 3 e^(-s/3d)) / 4. T(0) = 1; T falls monotonically. thickness_mm >=
+  /// 0, or infinite.
   double transmittance(int channel, double thickness_mm) const;
 
   /// The distance within which `share` (in [0, 1)) of the light leaves: the inverse of cdf. For Burley

@@ -1,5 +1,5 @@
 /// Diffuse light and highlights of a G-buffer that has neither, with care for energy (d'Eon 2007, "careful conservation
-/// of energy"; Kelemen and Szirmay-Kalos 2001): what scatters is what the highlight has left.
+/// of energy"; Kelemen and Szirmay-Kalos 2001): the light that the highlight leaves is the light that scatters.
 #pragma once
 
 #include <array>
@@ -25,7 +25,8 @@ struct SpecularLobe {
 struct ShadingOptions {
   /// At most four. Their sum must leave something of the light under every angle.
   std::vector<SpecularLobe> lobes = {{0.05, 0.1}, {0.1, 0.2}, {0.2, 0.3}, {0.3, 0.5}};  // d'Eon 2007
-  /// Of light reflected head on, 0..1; the rest by Schlick 1994. ((n - 1) / (n + 1))^2 of the talk's n = 1.4.
+  /// Share of light that is reflected head on, F0, 0..1; Schlick 1994 gives the rest. The default is ((n - 1) / (n +
+  /// 1))^2 for the talk's n = 1.4.
   double reflectance = 0.0277777777777777778;
   /// A point looks itself up in a map above the surface, along its normal, so that it does not lie in its own shadow:
   /// (this + softness_texels) sqrt(2) times the size of a texel at the point. 0..1e6; from 0.5 on a plane is free of
@@ -37,7 +38,7 @@ struct ShadingOptions {
   bool operator==(const ShadingOptions&) const = default;
 };
 
-/// Where a picture is seen from.
+/// The place that a picture is seen from.
 struct Viewer {
   Camera::Projection projection = Camera::Projection::perspective;
   /// World space: the eye if perspective, scene units; the direction in which the camera looks if orthographic.

@@ -1,4 +1,4 @@
-/// A profile made discrete: which pixels the separable passes read, and what each is worth.
+/// Taps: a profile made discrete, as the pixels that the separable passes read and the weight of each.
 #pragma once
 
 #include <array>
@@ -9,7 +9,7 @@
 
 namespace dermis {
 
-/// How few one-dimensional functions stand for the profile: R(sqrt(x^2 + y^2)) ~ sum over terms of scale f(x) f(y).
+/// A way to make a profile of a few one-dimensional functions: R(sqrt(x^2 + y^2)) ~ sum over terms of scale f(x) f(y).
 enum class Model {
   pre_integrated,  ///< rank 1: the marginal a(x) (Jimenez et al. 2015, eq. 4-5); exact along axis-parallel edges
   artist,          ///< rank 1: two Gaussians fitted to a(x) (eq. 6)
@@ -19,7 +19,7 @@ enum class Model {
   optimised,       ///< rank 1: least error on natural images; rank 2, 3: a(x) and zero-sum corrections to it
 };
 
-/// Where the taps of a pass lie.
+/// A way to place the taps of a pass.
 enum class Placement {
   uniform,     ///< at equal distances
   importance,  ///< each stands for the same light of the widest channel (Jimenez et al. 2015, section 6)
@@ -27,13 +27,13 @@ enum class Placement {
   optimised,   ///< positions and weights together make the error on natural images least; as importance beyond 65 taps
 };
 
-/// How a pass reads between pixels.
+/// The points that a pass can read.
 enum class Fetch {
   integer,  ///< at whole pixels only
   linear,   ///< anywhere, by linear interpolation of two neighbours
 };
 
-/// What taps to make of a profile.
+/// A choice of taps for a profile.
 struct TapsDesign {
   Model model = Model::optimised;
   /// Terms: 1 for most models, 1..6 for svd and gaussians, 1..3 for optimised. 0, with a tolerance: see with_rank.
@@ -91,148 +91,5 @@ TapSet make_tap_set(const Profile& profile, const TapsDesign& design, double pix
 /// at most `tolerance` for pixels of that size; none if only the exact method can do. Throws Error(usage) if
 /// `tolerance` is not above 0 or `pixel_mm` not in 1e-12..1e12.
 std::optional<TapsDesign> cheapest_design(const Profile& profile, double tolerance, double pixel_mm);
-
-/// A function of distance for three channels that a kernel evaluates from the squared distance without a root, a
-/// logarithm or a look-up in memory: a parabola in each of 32 octaves of r^4,
-///
-///     value = a + t (b + t c),   r^4 = 2^(first_exponent + octave) (1 + t),   0 <= t < 1.
-///
-/// It has no jumps. Below the first octave it is the first value, beyond the last octave the last (0 for a falloff).
-struct RadialTable {
-  static constexpr int octaves = 32;
-
-  int first_exponent = 0;
-  std::array<std::array<std::array<float, octaves>, 3>, 3> coefficients{};  ///< of each channel: a, b, c
-};
-
-/// One term of the separable passes: scale f(x) f(y).
-struct Term {
-  std::array<float, 3> scale{1, 1, 1};
-  /// True: the weighted sum is divided by the sum of its weights. False: the term is a difference from the pixel
-  /// itself, sum x_0 + sum over taps of w_i (x_i - x_0), so that missing taps count as the pixel.
-  bool normalised = true;
-  std::array<float, 3> sum{1, 1, 1};  ///< of the weights, where nothing is missing; 1 if normalised
-  RadialTable falloff;                ///< f(r), 1/mm
-  RadialTable centre;                 ///< integral of f over |x| < r^2: of the root of a distance, to reach nearer to 0
-};
-
-/// What one pair of taps is worth in one term.
-struct TapWeight {
-  std::array<float, 3> length_mm;  ///< times f(distance)
-  std::array<float, 3> share;      ///< times the pair's weight in the first term; 0 in the first term
-};
-
-/// The taps for kernels of about one size in pixels.
-struct TapLevel {
-  float px_per_mm;                                ///< pixels per mm that the taps were placed for
-  float centre_half_width_px;                     ///< the centre tap stands for |x| < this
-  std::vector<std::array<float, 3>> centre_gain;  ///< per term: times the centre's light
-  std::vector<int> offsets_px;                    ///< one symmetric pair of taps each, at + and -; ascending, > 0
-  std::vector<TapWeight> weights;                 ///< of all terms of the first pair, then of the second, ...
-  /// What a tap is worth on a flat block, for kernel radii nearest to each eighth of the level: of all terms of the
-  /// centre, then of the first pair, ... Multiples of 2^-24; of a normalised term they sum to exactly 1. The centre's
-  /// is used if the term is normalised.
-  std::array<std::vector<std::array<float, 3>>, 8> flat_weights;
-  /// What the flat weights of the level's middle (the fifth eighth) change by on a smooth block: with the stretch q, of
-  /// all terms of the centre, then of the first pair, ... Multiples of 2^-20, which sum to exactly 0 in every term; and
-  /// with the skew k, of all terms of the first pair, ..., for the tap at + of a pair, the other one changing by the
-  /// opposite.
-  std::vector<std::array<float, 3>> stretch_weights;
-  std::vector<std::array<float, 3>> skew_weights;
-};
-
-/// What the separable passes need to know of a profile: a level table of tap sets over kernel size, so that
-/// every tap lies on a whole pixel whatever the px_per_mm, and each term's f and its integral as tables, so that a pass
-/// can weigh each tap by the true distance of the surface points.
-///
-/// A pass over pixel p of width factor k per channel (1 unless an albedo or mask scales the profile) takes the level of
-/// its block and computes for each term t
-///
-///     w_0 = centre_gain centre(sqrt(centre_half_width_px s_p / k))
-///     w_i = length_mm_i level.px_per_mm s_i falloff(|P_p - P_i| / k) / k + share_i w_i(first term)
-///     result = sum w_i x_i / sum w_i                      if t is normalised
-///            = sum_t x_p + g sum w_i (x_i - x_p)          if not, g = 1 / max(1, sum w_i(first term))
-///
-/// where P are the surface points and s is the length of surface, mm, that a pixel spans along the pass. The sums go
-/// over the taps that lie on the same material. The horizontal pass makes one image per term from the light, the
-/// vertical pass the sum over terms of scale times its result on that image.
-///
-/// Let X and Y be the change of position with one pixel along x and along y, the change of depth in it being the
-/// smaller one of the differences to both neighbours of the same material, 0 if they differ in sign. The horizontal
-/// pass runs along (1, 0), with s = |X|. The vertical one runs along (shear, 1),
-///
-///     shear = - X.Y / X.X, held within -1..1      s = |Y + shear X|
-///
-/// so that on the surface it crosses the horizontal one at a right angle (Gram and Schmidt): on the screen a surface
-/// that is tilted both ways shows its axes askew. The tap of offset o lies o rows below and floor(o shear + 1/2)
-/// columns to the side, held within -32..32, shear rounded to 1/4096. Shear is 0 without depth, with rotated taps, and
-/// without Options::sheared.
-///
-/// A block is 16 x 16 pixels, its corner at a multiple of 16. Its level in a pass is that of the kernel radius
-/// radius_mm * max over its pixels that scatter of F max_c(k_c relative_width_c), where F is the pixel's px_per_mm
-/// along the pass; if that level is -1 each term is its sum at one point.
-///
-/// On a flat block the weights are those of the level: w_i = flat_weights_i, whatever the depth; and its level in a
-/// pass along x, and the eighth of the level, is the nearest to the kernel radius radius_mm / |T|, as the surface is
-/// seen at an angle. A block is flat in a pass if no pixel has a width of its own and no tap is rotated, and if there
-/// is no depth, or the surface within reach is nearly a plane. Reach is 9/8 of the farthest tap, for the radius above,
-/// of the materials that scatter in the block. Of the pixels with a material in the blocks of the same row (column, for
-/// the vertical pass) that lie at least partly within reach, let z be the depths and g, h the differences between the
-/// depths of neighbours of the same material within a block, in x and in y; with their middles z', g', h' and half
-/// ranges dz, dg, dh (0 where there is no pair), and x', y' = change of position with depth along the ray through the
-/// middle of the block,
-///
-///     T  = (size(z') + x' g', y' g', g')                change of position per pixel
-///     dT = (size(dz) + |x'| dg, |y'| dg, dg)            how much it may vary; size(dz) = dz / focal length
-///     flat if |dT|^2 <= flatness^2 |T|^2
-///         and 2 dz <= columns (|g'| + dg) + rows (|h'| + dh) + |T|   no step, columns and rows counting the pixels of
-///                                                       those blocks that lie in the frame
-///
-/// and the same with x and y exchanged. In the vertical pass all pixels of a flat block share the shear in its middle,
-/// of the z', g' and h' of its own pixels; the blocks beside those in the column that the taps reach are looked at too,
-/// and T and dT are those along (shear, 1): T + shear times the other T, dT + |shear| times the other dT. A shear that
-/// moves no tap within reach is 0. A block is smooth in a pass if it is not flat, but would be with `smoothness` in
-/// place of `flatness`. Its level is the nearest to the same kernel radius, and the weights are, to first order, those
-/// of the true distances along a surface that bends:
-///
-///     w_i = flat_weights_i + q stretch_weights_i +- k skew_weights_i
-///     q = level.px_per_mm^2 |T|^2 - 1,  k = level.px_per_mm^2 T.T'    both held within -most_stretch..most_stretch and
-///                                                                 -most_skew / last offset..most_skew / last offset
-///
-/// where T is the pixel's own change of position along the pass, with the block's shear, and T' that of T, both by
-/// central differences of depth (of the difference to the only neighbour of the same material if the other one is of
-/// another; 0 if there is none); the mixed second difference is that of the pixels on the diagonal, 0 unless both are
-/// of the material.
-struct Taps {
-  /// The radius, mm, beyond which the passes do not look: 99.9 % of the widest channel's marginal lie within for rank
-  /// 1, 99.99 % for rank 2, 99.999 % for more.
-  double radius_mm = 0;
-  /// The same radius of each channel's own marginal, divided by radius_mm: 1 for the widest channel.
-  std::array<float, 3> relative_width{};
-  std::vector<Term> terms;       ///< the first is normalised
-  std::vector<TapLevel> levels;  ///< see level_index
-
-  /// How much of its length the change of position per pixel may vary within reach on a flat block, and on a smooth
-  /// one.
-  static constexpr float flatness = 0.1F;
-  static constexpr float smoothness = 0.4F;
-
-  /// Bounds of q, and of k times the farthest tap's offset.
-  static constexpr float most_stretch = 0.75F;
-  static constexpr float most_skew = 0.5F;
-
-  /// Kernel radii of the first and the last level, px: narrower kernels are left alone, wider ones use the last level.
-  /// A channel whose own radius on a level is below the first has no weights there but its centre's.
-  static constexpr float min_radius_px = 0.5F;
-  static constexpr int log2_levels_per_octave = 4;
-  static constexpr int octaves = 15;
-
-  /// The level for a kernel radius in px, or -1 if the kernel is narrower than half a pixel.
-  /// Levels divide each octave in 16 equal steps.
-  static int level_index(float radius_px);
-};
-
-/// The level table of a design. Throws Error(usage) if the design is out of range.
-Taps make_taps(const Profile& profile, const TapsDesign& design);
 
 }  // namespace dermis

@@ -49,7 +49,7 @@ struct TextureDescription {
 };
 
 enum class TextureMethod {
-  gaussians,  ///< a sum of six Gaussians, each blur made from the last: see GaussianChain
+  gaussians,  ///< a sum of six Gaussians, each made from the one before: see GaussianChain
   recursive,  ///< exponentials, in a time that does not depend on their length: see Recursion
 };
 
@@ -62,14 +62,14 @@ struct TextureOptions {
   bool operator==(const TextureOptions&) const = default;
 };
 
-/// A profile as Gaussians of the plane, per channel by ascending variance, most of them made from the last by a blur of
-/// the difference of variances (d'Eon, GDC 2007; GPU Gems 3, section 14.4.3). At a texel of stretch s
+/// A profile as Gaussians of the plane, per channel by ascending variance, most of them made from the one before by a
+/// blur of the difference of variances (d'Eon, GDC 2007; GPU Gems 3, section 14.4.3). At a texel of stretch s
 ///
 ///     blur_k(i) = sum_o w_o source(i + o n) / sum_o w_o,    |o| <= taps
 ///
 /// along u, then along v, i + o n mirrored at the ends of the run; the result is the sum over k of weight_k blur_k. The
 /// first Gaussian, and those of a deviation of at most `narrow` of the smallest stretch of all texels, are made from
-/// the light itself, by what of the Gaussian falls on each texel:
+/// the light itself, by the share of the Gaussian that falls on each texel:
 ///
 ///     w_o = erf((o + 1/2) s / sqrt(2 d)) - erf((o - 1/2) s / sqrt(2 d)),   d = variance_k,   n = 1
 ///
@@ -128,7 +128,7 @@ GaussianChain make_gaussian_chain(const Profile& profile);
 /// The four poles of each function of a profile. Throws Error(usage) if they would be worse than worst_rel_l2.
 Recursion make_recursion(const Profile& profile);
 
-/// What one run did. Times are of the device, in milliseconds.
+/// Counts and times of one run. Times are those of the device, in milliseconds.
 struct TextureStats {
   double prepare_ms = 0;  ///< the light and the runs of texels
   double scatter_ms = 0;  ///< the passes
@@ -137,7 +137,7 @@ struct TextureStats {
 
   std::int64_t texels = 0;
   std::int64_t texels_empty = 0;
-  /// What the passes consist of: blocks of 64 x 16 texels in each blur, or rows and columns (recursive).
+  /// Parts that the passes consist of: blocks of 64 x 16 texels in each blur, or rows and columns (recursive).
   std::int64_t parts = 0;
   std::int64_t parts_empty = 0;  ///< skipped: no texel of an object
   std::int64_t parts_unlit = 0;  ///< skipped: no light within reach
@@ -160,7 +160,7 @@ class TexturePlan {
   /// for a result without an albedo, Error(device) on a device error.
   TextureStats run(const TextureFrame& frame) const;
 
-  /// Of the profile on a texture, before discretisation.
+  /// The error to expect of the fit to the profile, before discretisation: as TapSet::predicted_rel_l2.
   double predicted_rel_l2() const;
 
   struct State;  ///< not for callers

@@ -1,5 +1,5 @@
-// The tables of Shading: of Beckmann's distribution by the square of a tangent, and of what the highlight reflects by a
-// cosine.
+// The highlight of Shading, by tables: Beckmann's distribution over the square of a tangent, and the share rho that the
+// highlight reflects, over a cosine.
 #include "base/linear_table.h"
 #include "lighting/space.h"
 
@@ -18,9 +18,9 @@ static inline float reflected_at(const Highlight* h, float cosine) {
   return below + (place - node) * (h->reflected[node + 1] - below);
 }
 
-// The highlight of Kelemen and Szirmay-Kalos, pi times the BRDF. n, to the light and to the viewer of unit length, both
-// on the side of n. The square of the tangent from a cross product, as 1 - cosine^2 would lose the peak of narrow
-// lobes.
+// The highlight of Kelemen and Szirmay-Kalos, pi times the BRDF. All directions have unit length, and light and viewer
+// are on the side of n. The square of the tangent comes from a cross product, as 1 - cosine^2 would lose the peak of
+// narrow lobes.
 static inline float highlight(const Highlight* h, float3 n, float3 to_light, float3 to_viewer) {
   const float3 half_way = to_light + to_viewer;
   const float square = dot_of(half_way, half_way);

@@ -1,7 +1,7 @@
-// What comes from a light, and what its map shows: Light and ShadowMap of lights.hpp.
+// Light at a point, and the surface that a light's map shows: Light and ShadowMap of lights.hpp.
 #include "lighting/space.h"
 
-// What reaches a point if nothing lies between. No light reaches the light itself.
+// The light that reaches a point if nothing lies between. No light reaches the light itself.
 typedef struct {
   float3 towards;  // the light, unit length
   float distance;  // from its position; of a directional light 0
@@ -28,15 +28,15 @@ static inline Incident incident_at(global const struct LightParams* light, float
   return in;
 }
 
-// Where a point falls on a map.
+// The place of a point on a map.
 typedef struct {
   int is_known;  // 0 off the map, behind the light, and if there is no map
   float x, y;    // texels from the upper left corner
   float depth;   // along the map's view axis, scene units
-  float slant;   // length of the way of light per depth
+  float slant;   // length of the light's way per unit of depth
 } MapPlace;
 
-// The texels are those at `point`, the depth is that of `deep`, which may lie a little beside it.
+// `point` decides the texels; the depth is that of `deep`, which may lie a little beside it.
 static inline MapPlace place_on_map(global const struct LightParams* light, float3 point, float3 deep) {
   MapPlace place = {0, 0.0f, 0.0f, 0.0f, 1.0f};
   if (light->map_width == 0) return place;
@@ -59,16 +59,17 @@ static inline float texel_at(global const struct LightParams* light, float3 poin
   return light->map_width == 0 ? 0.0f : light->texel * fmax(row_times(light->clip_w, point), 0.0f);
 }
 
-// How far a point lies behind what a texel shows, along the view axis; less than 0 or no number if it does not.
+// Distance of a point behind the surface that a texel shows, along the view axis; below 0 or no number if the point
+// lies before it.
 static inline float depth_behind(global const struct LightParams* light, global const float* maps,
                                  const MapPlace* place, int x, int y) {
   const float v = maps[light->first_texel + y * light->map_width + x];
   return place->depth - (light->depth_of[0] * v + light->depth_of[1]) / (light->depth_of[2] * v + light->depth_of[3]);
 }
 
-// The texels of one axis in a square of a map, and how much of each.
+// The texels of a square of a map, along one axis.
 typedef struct {
-  float low, high;
+  float low, high;  // edges of the square
   int first, last;
 } Texels;
 
@@ -80,6 +81,7 @@ static inline Texels texels_about(float centre, float softness, int size) {
   return texels;
 }
 
+// The share of a texel that lies in the square.
 static inline float share_of(const Texels* texels, int texel) {
   return fmax(fmin(texel + 1.0f, texels->high) - fmax((float)texel, texels->low), 0.0f);
 }

@@ -1,4 +1,4 @@
-// shade: diffuse light, what of the albedo is seen, and highlights: Shading of shading.hpp.
+// shade makes diffuse light, the albedo that is seen, and highlights: Shading of shading.hpp.
 #include "lighting/highlight.h"
 #include "lighting/lights.h"
 
@@ -20,49 +20,56 @@ static float visible(global const struct LightParams* light, global const float*
   return sum / area;
 }
 
+// A point of the surface.
+typedef struct {
+  float3 point, normal, to_viewer;  // both directions of unit length
+  float3 albedo;
+  int is_known;  // 0 if the pixel is to be left alone
+} Surface;
+
+static inline Surface surface_of(const struct ShadingParams* p, float3 point, float3 normal, float3 albedo) {
+  // viewer[3] is 1 for an eye, 0 for a direction.
+  const float3 way = (float3)(p->viewer[0], p->viewer[1], p->viewer[2]) - p->viewer[3] * point;
+  const float distance = sqrt(dot_of(way, way));
+  const float length = sqrt(dot_of(normal, normal));
+  const Surface surface = {
+      point, normal / length, way / distance, albedo,
+      length > 0.0f && isfinite(length) && is_finite_vector(point) && is_finite_vector(albedo) && distance > 0.0f};
+  return surface;
+}
+
 // A work-item has one pixel.
-kernel void shade(int width, global const uchar* position, struct ImageParams position_at, global const uchar* normal,
-                  struct ImageParams normal_at, global const uchar* albedo, struct ImageParams albedo_at,
-                  global uchar* light, struct ImageParams light_at, global uchar* seen, struct ImageParams seen_at,
-                  global uchar* specular, struct ImageParams specular_at, global uchar* beauty,
-                  struct ImageParams beauty_at, int writes_light, int writes_seen, int writes_specular,
-                  int writes_beauty, global const struct LightParams* lights, int light_count, global const float* maps,
-                  global const float4* tables, struct TableParams beckmann, global const float* reflected,
-                  float reflectance, float seen_gain, float4 viewer, float offset, float softness) {
+kernel void shade(struct ShadingImages at, struct ShadingParams p, global const uchar* position,
+                  global const uchar* normal, global const uchar* albedo, global uchar* light, global uchar* seen,
+                  global uchar* specular, global uchar* beauty, global const struct LightParams* lights,
+                  global const float* maps, global const float4* tables, global const float* reflected) {
   const int x = get_global_id(0);
   const int y = get_global_id(1);
-  const float3 point = read_vector(position, &position_at, width, x, y);
-  const float3 its_normal = read_vector(normal, &normal_at, width, x, y);
-  const float3 colour = read_vector(albedo, &albedo_at, width, x, y);
-  const float length = sqrt(dot_of(its_normal, its_normal));
-  // viewer.w is 1 for an eye, 0 for a direction.
-  float3 to_viewer = viewer.xyz - viewer.w * point;
-  const float distance = sqrt(dot_of(to_viewer, to_viewer));
-  if (!(length > 0.0f) || !isfinite(length) || !is_finite_vector(point) || !is_finite_vector(colour) ||
-      !(distance > 0.0f)) {
-    return;
-  }
-  to_viewer /= distance;
-  const float3 n = its_normal / length;
-  const Highlight h = {tables, beckmann, reflected, reflectance};
-  const float facing_viewer = dot_of(n, to_viewer);
+  const Surface s =
+      surface_of(&p, read_vector(position, &at.position, p.width, x, y), read_vector(normal, &at.normal, p.width, x, y),
+                 read_vector(albedo, &at.albedo, p.width, x, y));
+  if (!s.is_known) return;
+  const Highlight h = {tables, p.beckmann, reflected, p.reflectance};
+  const float facing_viewer = dot_of(s.normal, s.to_viewer);
   vrgb diffuse = broadcast_rgb(0.0f);
   vrgb shine = broadcast_rgb(0.0f);
-  for (int i = 0; i < light_count; ++i) {
-    const Incident in = incident_at(lights + i, point);
-    const float facing = dot_of(n, in.towards);
+  for (int i = 0; i < p.lights; ++i) {
+    const Incident in = incident_at(lights + i, s.point);
+    const float facing = dot_of(s.normal, in.towards);
     if (!(facing > 0.0f) || in.strength == 0.0f) continue;
-    const float strength =
-        in.strength * facing * visible(lights + i, maps, softness, point + offset * texel_at(lights + i, point) * n);
+    const float3 above = s.point + p.offset_texels * texel_at(lights + i, s.point) * s.normal;
+    const float strength = in.strength * facing * visible(lights + i, maps, p.softness_texels, above);
     const vrgb white = broadcast_rgb(1.0f);
     const vrgb its = scaled(lights[i].colour, white);
     diffuse = sum_rgb(diffuse, times(its, strength * (1.0f - reflected_at(&h, facing))));
-    if (facing_viewer > 0.0f) shine = sum_rgb(shine, times(its, strength * highlight(&h, n, in.towards, to_viewer)));
+    if (facing_viewer > 0.0f) {
+      shine = sum_rgb(shine, times(its, strength * highlight(&h, s.normal, in.towards, s.to_viewer)));
+    }
   }
-  const float seen_share = (1.0f - reflected_at(&h, facing_viewer)) * seen_gain;
-  const vrgb its_seen = {colour.x * seen_share, colour.y * seen_share, colour.z * seen_share};
-  if (writes_light) write_rgb(light, &light_at, x, y, diffuse, -1);
-  if (writes_seen) write_rgb(seen, &seen_at, x, y, its_seen, -1);
-  if (writes_specular) write_rgb(specular, &specular_at, x, y, shine, -1);
-  if (writes_beauty) write_rgb(beauty, &beauty_at, x, y, sum_rgb(product(diffuse, its_seen), shine), -1);
+  const float seen_share = (1.0f - reflected_at(&h, facing_viewer)) * p.seen_gain;
+  const vrgb its_seen = {s.albedo.x * seen_share, s.albedo.y * seen_share, s.albedo.z * seen_share};
+  if (p.writes_light) write_rgb(light, &at.light, x, y, diffuse, -1);
+  if (p.writes_seen) write_rgb(seen, &at.seen, x, y, its_seen, -1);
+  if (p.writes_specular) write_rgb(specular, &at.specular, x, y, shine, -1);
+  if (p.writes_beauty) write_rgb(beauty, &at.beauty, x, y, sum_rgb(product(diffuse, its_seen), shine), -1);
 }

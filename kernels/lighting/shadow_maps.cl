@@ -1,4 +1,4 @@
-// gather_map: the depths of one shadow map, from any format, into the buffer of all maps.
+// gather_map copies the depths of one shadow map, from any format, into the buffer of all maps.
 #include "lighting/space.h"
 
 // A work-item has one texel.

@@ -28,5 +28,5 @@ static inline float read_value(global const uchar* image, const struct ImagePara
   return read_values(row_of(image, at, width, y, 0), x);
 }
 
-// Of a number that is not finite the difference from itself is not a number.
+// A number that is not finite minus itself is not a number.
 static inline int is_finite_vector(float3 v) { return (v.x - v.x) + (v.y - v.y) + (v.z - v.z) == 0.0f; }

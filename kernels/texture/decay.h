@@ -1,9 +1,9 @@
-// How much of sixteen exponentials is left over a length.
+// Sixteen exponentials and cosines of a length.
 #include "base/exponential.h"
 
 DEFINE_EXP_OF_MINUS(exp_of_minus, float16, int16)
 
-// The cosine, and the sine in place of `sine`, for 0 <= x < 1e4, within 4 roundings of 1: by Taylor for |r| <= pi / 4.
+// Returns the cosine and writes the sine, for 0 <= x < 1e4, within 4 roundings of 1: by Taylor for |r| <= pi / 4.
 static inline float16 cos_and_sin(float16 x, float16* sine) {
   const float16 shifted = fma(x, 0.636619772f, ROUNDING);
   const float16 k = shifted - ROUNDING;

@@ -1,4 +1,4 @@
-// recurse_u, recurse_v: the passes of Recursion, see texture.hpp. A work-item has a few lines: rows, or columns.
+// The passes of Recursion, see texture.hpp: recurse_u along rows, recurse_v along columns. A work-item has a few lines.
 //
 // A pole pair has two states, p and q. Over a length of surface s they become
 //
@@ -6,8 +6,8 @@
 //     q' = b p + c q + light (Q - b P - c Q)                        b = -exp(-rate s) sin(turn s), P = 1, Q = 0
 //                                                of real rates:     a, c = exp(-rate s), b = 0,    P = Q = 1
 //
-// so that under constant light p = P light and q = Q light stay what they are. The lanes of a float16 are the pairs of
-// both functions in all channels: see STATES.
+// so that under constant light p = P light and q = Q light stay what they are. The lanes of a float16 are the pole
+// pairs of both functions in all channels: see STATES.
 #pragma OPENCL FP_CONTRACT OFF
 #include "texture/decay.h"
 #include "texture/texture.h"
@@ -62,7 +62,7 @@ static inline State plus(const State s, const State t) {
   return sum;
 }
 
-// What light adds over the length of a decay.
+// The state that light adds over the length of a decay.
 static inline State gain(const Poles* poles, const Decay d, float16 light) {
   const State result = {fma(d.b, poles->rest_q, 1.0f - d.a) * light,
                         (fma(-d.c, poles->rest_q, poles->rest_q) - d.b) * light};
@@ -80,7 +80,7 @@ static inline float16 result_of(const Poles* poles, const State s) {
   return fma(poles->share, s.p, poles->other_share * s.q);
 }
 
-// One line of a pass: texel i of it lies i * along floats on. The pass along u makes eight floats of four.
+// One line of a pass: its texel i lies i * along floats on. The pass along u makes eight floats of four.
 typedef struct {
   global const float* source;
   global float* target;
@@ -88,14 +88,14 @@ typedef struct {
   global const uchar* stretch;
   long stretch_along;
   int stretch_format;
-  int down;
+  int along_v;
 } Line;
 
 static inline int is_object(const Line* line, int i) { return line->source[i * line->source_along + 3] > 0.0f; }
 
 static inline float16 light_at_texel(const Line* line, int i) {
   global const float* p = line->source + i * line->source_along;
-  if (line->down) {
+  if (line->along_v) {
     const float8 both = vload8(0, p);
     return (float16)(both, both);
   }
@@ -134,7 +134,7 @@ static inline Decay texel_decay(const Poles* poles, const Decay half_texel) {
 
 static inline void store(const Line* line, int i, float8 value, int adds) {
   global float* p = line->target + i * line->target_along;
-  if (line->down) {
+  if (line->along_v) {
     const float4 light = value.lo + value.hi;
     vstore4(adds ? vload4(0, p) + light : light, 0, p);
   } else {
@@ -144,8 +144,8 @@ static inline void store(const Line* line, int i, float8 value, int adds) {
 }
 
 // The states that enter a run, as if it went on mirrored. Both sums over the run, from its far end to the near one and
-// back, are made at once. `left`: what is left of a state over the whole run; `taken` = 1 - left, summed as the light
-// is, so that it is as exact as the sums where a run is shorter than the exponentials.
+// back, are made at once. `left` is the share of a state that is left over the whole run; `taken` = 1 - left, summed as
+// the light is, so that it is as exact as the sums where a run is shorter than the exponentials.
 static State entering(const Poles* poles, const Line* line, int begin, int end) {
   State there = {(float16)(0.0f), (float16)(0.0f)};
   State back = there;
@@ -170,7 +170,7 @@ static State entering(const Poles* poles, const Line* line, int begin, int end) 
   return times_state(inverse, plus(there, times_state(left, back)));
 }
 
-// What enters and leaves a run is the same at its far end, as it goes on mirrored there.
+// The same state enters a run at both ends, as it goes on mirrored there.
 static void scatter_run(const Poles* poles, const Line* line, int begin, int end) {
   State state = entering(poles, line, begin, end);
   for (int pass = 0; pass < 2; ++pass) {
@@ -185,12 +185,12 @@ static void scatter_run(const Poles* poles, const Line* line, int begin, int end
   }
 }
 
-// Returns 0 if no texel is of an object, 1 if none of those has light, else 2.
+// Returns LIT_EMPTY if no texel is of an object, LIT_DARK if none of those has light, else LIT_BRIGHT.
 static int scatter_line(const Poles* poles, const Line* line, int length) {
-  int found = 0;
+  int found = LIT_EMPTY;
   for (int begin = 0; begin < length;) {
     if (!is_object(line, begin)) {
-      if (!line->down) line->target[begin * line->target_along + 3] = 0.0f;
+      if (!line->along_v) line->target[begin * line->target_along + 3] = 0.0f;
       ++begin;
       continue;
     }
@@ -200,57 +200,72 @@ static int scatter_line(const Poles* poles, const Line* line, int length) {
     lit.s37bf = (int4)(0);  // these hold no light
     if (any(lit)) {
       scatter_run(poles, line, begin, end);
-      found = 2;
+      found = LIT_BRIGHT;
     } else {
       for (int i = begin; i < end; ++i) store(line, i, (float8)(0.0f), 0);
-      found = max(found, 1);
+      found = max(found, LIT_DARK);
     }
     begin = end;
   }
   return found;
 }
 
-static void scatter_lines(const struct TextureParams* t, int down, global const struct PoleParams* poles_of_pass,
-                          global const uchar* stretch, const struct ImageParams* stretch_at, global const float* source,
-                          global float* target, int lines_per_item, global int* counters) {
+// The buffers of a pass.
+typedef struct {
+  global const uchar* stretch;
+  global const float* source;
+  global float* target;
+  global int* counters;
+} Buffers;
+
+static void scatter_lines(const struct TextureParams* t, const struct TexturePass* pass, const Buffers* buffers,
+                          global const struct PoleParams* poles_of_pass) {
   const Poles poles = poles_from(poles_of_pass);
-  const int length = down ? t->height : t->width;
-  const int lines = down ? t->width : t->height;
-  const int first = get_global_id(0) * lines_per_item;
-  const int source_size = down ? 8 : 4;
-  const int target_size = down ? 4 : 8;
-  const long along = down ? t->stride : 1;
-  for (int n = first; n < min(first + lines_per_item, lines); ++n) {
-    const size_t start = down ? texel_at(t, n, 0) : texel_at(t, 0, n);
+  const int along_v = pass->along_v;
+  const int length = along_v ? t->height : t->width;
+  const int lines = along_v ? t->width : t->height;
+  const int first = get_global_id(0) * pass->lines_per_item;
+  const int source_size = along_v ? 8 : 4;
+  const int target_size = along_v ? 4 : 8;
+  const long along = along_v ? t->stride : 1;
+  for (int n = first; n < min(first + pass->lines_per_item, lines); ++n) {
+    const size_t start = along_v ? texel_at(t, n, 0) : texel_at(t, 0, n);
     const Line line = {
-      source + start * source_size,
-      target + start * target_size,
+      buffers->source + start * source_size,
+      buffers->target + start * target_size,
       along * source_size,
       along * target_size,
 #if HAS_STRETCH
-      stretch + (down ? byte_at(stretch_at, n, 0, 0) : byte_at(stretch_at, 0, n, 0)),
-      down ? stretch_at->row_stride : stretch_at->pixel_stride,
-      stretch_at->format,
+      buffers->stretch + (along_v ? byte_at(&pass->stretch, n, 0, 0) : byte_at(&pass->stretch, 0, n, 0)),
+      along_v ? pass->stretch.row_stride : pass->stretch.pixel_stride,
+      pass->stretch.format,
 #else
-      stretch,
+      buffers->stretch,
       0,
       0,
 #endif
-      down
+      along_v
     };
     const int found = scatter_line(&poles, &line, length);
-    if (found < 2) atomic_inc(counters + (found == 0 ? COUNTER_EMPTY_PARTS : COUNTER_UNLIT_PARTS));
+    if (found != LIT_BRIGHT) {
+      atomic_inc(buffers->counters + (found == LIT_EMPTY ? COUNTER_EMPTY_PARTS : COUNTER_UNLIT_PARTS));
+    }
   }
 }
 
-kernel void recurse_u(struct TextureParams t, global const struct PoleParams* poles, global const uchar* stretch,
-                      struct ImageParams stretch_at, global const float* source, global float* target,
-                      int lines_per_item, global int* counters) {
-  scatter_lines(&t, 0, poles, stretch, &stretch_at, source, target, lines_per_item, counters);
+// Two kernels, so that the compiler knows along which axis a pass runs.
+kernel void recurse_u(struct TextureParams t, struct TexturePass pass, global const struct PoleParams* poles,
+                      global const uchar* stretch, global const float* source, global float* target,
+                      global int* counters) {
+  const Buffers buffers = {stretch, source, target, counters};
+  pass.along_v = 0;
+  scatter_lines(&t, &pass, &buffers, poles);
 }
 
-kernel void recurse_v(struct TextureParams t, global const struct PoleParams* poles, global const uchar* stretch,
-                      struct ImageParams stretch_at, global const float* source, global float* target,
-                      int lines_per_item, global int* counters) {
-  scatter_lines(&t, 1, poles, stretch, &stretch_at, source, target, lines_per_item, counters);
+kernel void recurse_v(struct TextureParams t, struct TexturePass pass, global const struct PoleParams* poles,
+                      global const uchar* stretch, global const float* source, global float* target,
+                      global int* counters) {
+  const Buffers buffers = {stretch, source, target, counters};
+  pass.along_v = 1;
+  scatter_lines(&t, &pass, &buffers, poles);
 }

@@ -1,26 +1,18 @@
-// Textures: which texels there are.
+// Textures: the caller's images, texels and blocks.
 #include "frame/image.h"
 #include "frame/light.h"
 
 // The images that are read.
 typedef struct {
   global const uchar *light, *albedo, *mask, *stretch_u, *stretch_v;
-  struct ImageParams light_at, albedo_at, mask_at, stretch_u_at, stretch_v_at;
+  struct TextureLayouts at;
 } TextureImages;
-
-#define TEXTURE_IMAGES                                                                                              \
-  global const uchar *light, struct ImageParams light_at, global const uchar *albedo, struct ImageParams albedo_at, \
-      global const uchar *mask, struct ImageParams mask_at, global const uchar *stretch_u,                          \
-      struct ImageParams stretch_u_at, global const uchar *stretch_v, struct ImageParams stretch_v_at
-
-#define ITS_TEXTURE_IMAGES \
-  { light, albedo, mask, stretch_u, stretch_v, light_at, albedo_at, mask_at, stretch_u_at, stretch_v_at }
 
 // V texels as they are read.
 typedef struct {
   vrgb light, albedo;
   vfloat stretch_u, stretch_v;  // mm
-  vint object;                  // lanes that are not empty
+  vint object;                  // mask of the lanes that are not empty
 } Texels;
 
 static inline vint finite_rgb(vrgb v) {
@@ -30,14 +22,14 @@ static inline vint finite_rgb(vrgb v) {
 
 static inline vint valid_stretch(vfloat mm) { return AS_MASK(mm >= 1e-9f) & AS_MASK(mm <= 1e9f); }
 
-// The light times albedo^m, 0 in empty lanes.
+// V texels from x on; their light is times albedo^m, and 0 in empty lanes.
 SHARED Texels read_texels(const struct TextureParams* t, const TextureImages* in, int x, int y) {
-  const RgbRow light_row = rgb_row_of(in->light, &in->light_at, t->width, y);
+  const RgbRow light_row = rgb_row_of(in->light, &in->at.light, t->width, y);
   Texels texels;
   texels.light = read_rgb(&light_row, x);
   texels.object = AS_MASK(x + int_lane_numbers() < (vint)(t->width));
 #if HAS_ALBEDO
-  const RgbRow albedo_row = rgb_row_of(in->albedo, &in->albedo_at, t->width, y);
+  const RgbRow albedo_row = rgb_row_of(in->albedo, &in->at.albedo, t->width, y);
   texels.albedo = read_rgb(&albedo_row, x);
   texels.object &= finite_rgb(texels.light) & finite_rgb(texels.albedo);
   if (t->albedo_mix != 0.0f) texels.light = product(texels.light, albedo_power(texels.albedo, t->albedo_mix));
@@ -46,11 +38,11 @@ SHARED Texels read_texels(const struct TextureParams* t, const TextureImages* in
 #endif
   texels.object &= finite_rgb(texels.light);
 #if HAS_MASK
-  texels.object &= AS_MASK(read_values(row_of(in->mask, &in->mask_at, t->width, y, 0), x) > 0.0f);
+  texels.object &= AS_MASK(read_values(row_of(in->mask, &in->at.mask, t->width, y, 0), x) > 0.0f);
 #endif
 #if HAS_STRETCH
-  texels.stretch_u = read_values(row_of(in->stretch_u, &in->stretch_u_at, t->width, y, 0), x);
-  texels.stretch_v = read_values(row_of(in->stretch_v, &in->stretch_v_at, t->width, y, 0), x);
+  texels.stretch_u = read_values(row_of(in->stretch_u, &in->at.stretch_u, t->width, y, 0), x);
+  texels.stretch_v = read_values(row_of(in->stretch_v, &in->at.stretch_v, t->width, y, 0), x);
   texels.object &= valid_stretch(texels.stretch_u) & valid_stretch(texels.stretch_v);
 #else
   texels.stretch_u = texels.stretch_v = (vfloat)(t->mm_per_texel);
@@ -59,6 +51,23 @@ SHARED Texels read_texels(const struct TextureParams* t, const TextureImages* in
   return texels;
 }
 
+// Texels of a plane.
 static inline size_t plane_of(const struct TextureParams* t) { return (size_t)t->stride * t->height; }
 
 static inline size_t texel_at(const struct TextureParams* t, int x, int y) { return (size_t)y * t->stride + x; }
+
+// The block of a work-item.
+typedef struct {
+  int index;
+  int x_begin, x_end, y_begin, y_end;  // texels
+} Block;
+
+static inline Block its_block(const struct TextureParams* t) {
+  const int x = get_global_id(0) * BLOCK_WIDTH;
+  const int y = get_global_id(1) * BLOCK_HEIGHT;
+  const Block block = {get_global_id(1) * t->blocks_x + get_global_id(0), x, min(x + BLOCK_WIDTH, t->width), y,
+                       min(y + BLOCK_HEIGHT, t->height)};
+  return block;
+}
+
+static inline int blocks_of(const struct TextureParams* t) { return t->blocks_x * t->blocks_y; }

@@ -1,10 +1,10 @@
-// texture_runs_u, texture_runs_v, texture_blur: the chain of Gaussians of texture.hpp. A work-item of the first has a
-// row, of the second V columns, of the last a block.
+// The chain of Gaussians: GaussianChain of texture.hpp. A work-item of texture_runs_u has a row, of texture_runs_v V
+// columns, of texture_blur a block.
 #pragma OPENCL FP_CONTRACT OFF
 #include "base/exponential.h"
 #include "texture/texture.h"
 
-// Texels of the run before and after each one, -1 before an empty one.
+// Writes how many texels of its run lie before and after each texel; -1 for an empty one.
 kernel void texture_runs_u(struct TextureParams t, global const uchar* objects, global int* before, global int* after) {
   const size_t row = texel_at(&t, 0, get_global_id(0));
   const int x_end = (t.width + V - 1) / V * V;  // lanes beyond the edge are empty
@@ -44,12 +44,12 @@ kernel void texture_runs_v(struct TextureParams t, global const uchar* objects, 
 
 static inline vint load_ints(global const int* p) { return *(global const vint*)p; }
 
-// Where V texels are in their runs.
+// The places of V texels in their runs.
 typedef struct {
-  vint before;  // 0 in empty lanes
-  vint length;  // 1 there
+  vint before;  // texels of the run before each; 0 in empty lanes
+  vint length;  // texels of the run; 1 in empty lanes
   int room;     // texels that all lanes have on both sides; -1 if a lane is empty
-  vint object;
+  vint object;  // mask of the lanes that are not empty
 } Runs;
 
 static inline Runs runs_at(global const int* before, global const int* after, size_t at) {
@@ -63,7 +63,7 @@ static inline Runs runs_at(global const int* before, global const int* after, si
   return runs;
 }
 
-// How many texels from each lane its tap is, mirrored at the ends of the run.
+// The distance, texels, from each lane to its tap, which is mirrored at the ends of the run.
 static inline vint mirrored(const Runs* runs, vint offset) {
   const vint period = 2 * runs->length;
   vint place = (runs->before + offset) % period;
@@ -121,16 +121,17 @@ static inline vint steps_within(vfloat mm, vfloat most) {
   vfloat n = floor(most / mm);
   n += select((vfloat)(0.0f), (vfloat)(1.0f), AS_MASK((n + 1.0f) * mm <= most));
   n -= select((vfloat)(0.0f), (vfloat)(1.0f), AS_MASK(n * mm > most));
-  return whole(fmax(n, (vfloat)(1.0f)));
+  return convert_vint(fmax(n, (vfloat)(1.0f)));
 }
 
 static inline vint steps_beyond(vfloat mm, vfloat least) {
   vfloat n = ceil(least / mm);
   n -= select((vfloat)(0.0f), (vfloat)(1.0f), AS_MASK((n - 1.0f) * mm >= least));
   n += select((vfloat)(0.0f), (vfloat)(1.0f), AS_MASK(n * mm < least));
-  return whole(fmax(n, (vfloat)(1.0f)));
+  return convert_vint(fmax(n, (vfloat)(1.0f)));
 }
 
+// The blur of V texels of the light.
 static vfloat from_light(const struct BlurParams* blur, global const float* p, int along, const Runs* runs,
                          vfloat stretch) {
   const float deviation = blur->total_deviation_mm;
@@ -152,6 +153,7 @@ static vfloat from_light(const struct BlurParams* blur, global const float* p, i
   return sum / norm;
 }
 
+// The blur of V texels of the Gaussian before.
 static vfloat from_last(const struct BlurParams* blur, global const float* p, int along, const Runs* runs,
                         vfloat stretch) {
   const float deviation = blur->deviation_mm;
@@ -192,44 +194,39 @@ static inline vfloat blurred(const struct BlurParams* blur, global const float* 
 
 #endif
 
-// Whether a block within reach of a blur along the axis has light.
+// Whether a block within reach of a blur has light, by a part of the buffer of what is lit. `finest`: mm, of the block.
 static int is_lit(const struct TextureParams* t, const struct BlurParams* blur, global const uchar* lit, float finest,
-                  int down) {
+                  int along_v) {
   const float deviation = blur->from_light ? blur->total_deviation_mm : blur->deviation_mm;
   // Rounded up to a step, which is no more than the spacing, or a texel.
   const int reach = (int)((REACH + 1.0f) * fmin(deviation / finest, MOST_TEXELS)) + 2;
-  const int block = get_global_id(down);
-  const int size = down ? BLOCK_HEIGHT : BLOCK_WIDTH;
-  const int blocks = down ? t->blocks_y : t->blocks_x;
+  const int block = get_global_id(along_v);
+  const int size = along_v ? BLOCK_HEIGHT : BLOCK_WIDTH;
+  const int blocks = along_v ? t->blocks_y : t->blocks_x;
   const int first = max(0, block - (reach + size - 1) / size);
   const int last = min(blocks - 1, block + (reach + size - 1) / size);
   for (int b = first; b <= last; ++b) {
-    const int at = down ? b * t->blocks_x + get_global_id(0) : get_global_id(1) * t->blocks_x + b;
-    if (lit[at] == 2) return 1;
+    const int at = along_v ? b * t->blocks_x + get_global_id(0) : get_global_id(1) * t->blocks_x + b;
+    if (lit[at] == LIT_BRIGHT) return 1;
   }
   return 0;
 }
 
-// One pass of one level, along u, from the light or the last level into `between`, or along v from there into the
-// level, if `down`. `sum`: of the levels so far, to add this one to. The `lit` are as texture_prepare makes them, of
-// each channel of what is read and written.
-kernel void texture_blur(struct TextureParams t, global const struct BlurParams* level, global const float* weights,
-                         int down, global const uchar* stretch, struct ImageParams stretch_at, global const int* before,
-                         global const int* after, global const float* finest, global const uchar* light_lit,
-                         global const float* light, global uchar* between_lit, global float* between,
-                         global uchar* last_lit, global float* last, global float* sum, global int* counters) {
-  const int block = get_global_id(1) * t.blocks_x + get_global_id(0);
-  const size_t plane = plane_of(&t);
-  const int x_begin = get_global_id(0) * BLOCK_WIDTH;
-  const int x_end = min(x_begin + BLOCK_WIDTH, t.width);
-  const int y_begin = get_global_id(1) * BLOCK_HEIGHT;
-  const int y_end = min(y_begin + BLOCK_HEIGHT, t.height);
-  if (light_lit[block] == 0) {
+// One pass of one Gaussian: along u from the light or the Gaussian before into `between`, or along v from there into
+// `last`, whose share is added to `sum`. `level`: the blurs of the three channels.
+kernel void texture_blur(struct TextureParams t, struct TexturePass pass, global const struct BlurParams* level,
+                         global const float* weights, global const uchar* stretch, global const int* before,
+                         global const int* after, global const float* finest, global uchar* lit,
+                         global const float* light, global float* between, global float* last, global float* sum,
+                         global int* counters) {
+  const Block block = its_block(&t);
+  if (lit[block.index] == LIT_EMPTY) {  // of the light, whose part is the first
     atomic_inc(counters + COUNTER_EMPTY_PARTS);
     return;
   }
-  const int blocks = t.blocks_x * t.blocks_y;
-  const int along = down ? t.stride : 1;
+  const size_t plane = plane_of(&t);
+  const int blocks = blocks_of(&t);
+  const int along = pass.along_v ? t.stride : 1;
   int any_lit = 0;
   for (int c = 0; c < 3; ++c) {
     struct BlurParams blur = level[c];
@@ -237,28 +234,29 @@ kernel void texture_blur(struct TextureParams t, global const struct BlurParams*
     const float finest_of_all = as_float(counters[COUNTER_FINEST]);
     blur.from_light = blur.is_first || blur.total_deviation_mm <= NARROW * finest_of_all;
 #endif
-    global const float* source = (down ? between : blur.from_light ? light : last) + c * plane;
-    global float* target = (down ? last : between) + c * plane;
-    global const uchar* source_lit = (down ? between_lit : blur.from_light ? light_lit : last_lit) + c * blocks;
-    const int lit = is_lit(&t, &blur, source_lit, finest[block], down);
-    (down ? last_lit : between_lit)[c * blocks + block] = lit ? 2 : 1;
-    any_lit |= lit;
-    for (int y = y_begin; y < y_end; ++y) {
-      for (int x = x_begin; x < x_end; x += V) {
+    const int from = pass.along_v ? PLANE_BETWEEN : blur.from_light ? PLANE_LIGHT : PLANE_LAST;
+    const int to = pass.along_v ? PLANE_LAST : PLANE_BETWEEN;
+    global const float* source = (from == PLANE_BETWEEN ? between : from == PLANE_LIGHT ? light : last) + c * plane;
+    global float* target = (to == PLANE_LAST ? last : between) + c * plane;
+    const int has_light = is_lit(&t, &blur, lit + (3 * from + c) * blocks, finest[block.index], pass.along_v);
+    lit[(3 * to + c) * blocks + block.index] = has_light ? LIT_BRIGHT : LIT_DARK;
+    any_lit |= has_light;
+    for (int y = block.y_begin; y < block.y_end; ++y) {
+      for (int x = block.x_begin; x < block.x_end; x += V) {
         const size_t at = texel_at(&t, x, y);
         vfloat value = (vfloat)(0.0f);
-        if (lit) {
+        if (has_light) {
           const Runs runs = runs_at(before, after, at);
           vfloat its_stretch = (vfloat)(1.0f);
 #if HAS_STRETCH
-          its_stretch = select(its_stretch, read_values(row_of(stretch, &stretch_at, t.width, y, 0), x), runs.object);
+          its_stretch = select(its_stretch, read_values(row_of(stretch, &pass.stretch, t.width, y, 0), x), runs.object);
 #endif
           if (any_bit(runs.object)) {
             value = select_or_zero(runs.object, blurred(&blur, weights, source + at, along, &runs, its_stretch));
           }
         }
         store_floats(target + at, value);
-        if (down) {
+        if (pass.along_v) {
           global float* its_sum = sum + c * plane + at;
           store_floats(its_sum,
                        fma((vfloat)(blur.weight), value, blur.is_first ? (vfloat)(0.0f) : load_floats(its_sum)));

@@ -1,8 +1,8 @@
-// texture_prepare: the caller's images into what the passes read. A work-item has a block.
+// texture_prepare makes what the passes read of the caller's images. A work-item has a block.
 #pragma OPENCL FP_CONTRACT OFF
 #include "texture/texture.h"
 
-#if RECURSIVE
+#if INTERLEAVED
 
 // One float4 per texel, whose w says whether it is of an object.
 static inline void store_texels(global float* light, size_t plane, size_t at, const Texels* texels) {
@@ -31,22 +31,20 @@ static inline float lowest_of(vfloat v) {
   return lowest;
 }
 
-// `objects`: 1 per texel of an object. `block_lit`, of each channel: 2 if some texel of a block has light, 1 if it has
-// an object, else 0. `finest`: the smallest stretches of its texels along u, then of all blocks along v, mm.
-kernel void texture_prepare(struct TextureParams t, TEXTURE_IMAGES, global float* light_out, global uchar* objects,
-                            global uchar* block_lit, global float* finest, global int* counters) {
-  const TextureImages in = ITS_TEXTURE_IMAGES;
-  const int block = get_global_id(1) * t.blocks_x + get_global_id(0);
-  const int x_begin = get_global_id(0) * BLOCK_WIDTH;
-  const int x_end = min(x_begin + BLOCK_WIDTH, t.width);
-  const int y_begin = get_global_id(1) * BLOCK_HEIGHT;
-  const int y_end = min(y_begin + BLOCK_HEIGHT, t.height);
+// Writes the light, `objects` (1 per texel of an object), what of the block is `lit` in each channel, and `finest`, the
+// smallest stretches of the texels of each block along u, then those of all blocks along v, mm.
+kernel void texture_prepare(struct TextureParams t, struct TextureLayouts layouts, global const uchar* light,
+                            global const uchar* albedo, global const uchar* mask, global const uchar* stretch_u,
+                            global const uchar* stretch_v, global float* light_out, global uchar* objects,
+                            global uchar* lit_out, global float* finest, global int* counters) {
+  const TextureImages in = {light, albedo, mask, stretch_u, stretch_v, layouts};
+  const Block block = its_block(&t);
   vint lit[3] = {(vint)(0), (vint)(0), (vint)(0)};
   vint count = (vint)(0);
   vfloat finest_u = (vfloat)(INFINITY);
   vfloat finest_v = (vfloat)(INFINITY);
-  for (int y = y_begin; y < y_end; ++y) {
-    for (int x = x_begin; x < x_end; x += V) {
+  for (int y = block.y_begin; y < block.y_end; ++y) {
+    for (int x = block.x_begin; x < block.x_end; x += V) {
       const Texels texels = read_texels(&t, &in, x, y);
       const size_t at = texel_at(&t, x, y);
       store_texels(light_out, plane_of(&t), at, &texels);
@@ -63,13 +61,15 @@ kernel void texture_prepare(struct TextureParams t, TEXTURE_IMAGES, global float
 #define COUNT_LANE(lane) texel_count += LANE(count, lane);
   EACH_LANE(COUNT_LANE)
 #undef COUNT_LANE
-  const int blocks = t.blocks_x * t.blocks_y;
-  for (int c = 0; c < 3; ++c) block_lit[c * blocks + block] = any_bit(lit[c]) ? 2 : texel_count > 0;
+  const int blocks = blocks_of(&t);
+  for (int c = 0; c < 3; ++c) {
+    lit_out[c * blocks + block.index] = any_bit(lit[c]) ? LIT_BRIGHT : texel_count > 0 ? LIT_DARK : LIT_EMPTY;
+  }
   const float lowest_u = lowest_of(finest_u);
   const float lowest_v = lowest_of(finest_v);
-  finest[block] = lowest_u;
-  finest[blocks + block] = lowest_v;
+  finest[block.index] = lowest_u;
+  finest[blocks + block.index] = lowest_v;
   atomic_min(counters + COUNTER_FINEST, as_int(fmin(lowest_u, lowest_v)));
-  const int empty = (x_end - x_begin) * (y_end - y_begin) - texel_count;
+  const int empty = (block.x_end - block.x_begin) * (block.y_end - block.y_begin) - texel_count;
   if (empty > 0) atomic_add(counters + COUNTER_EMPTY_TEXELS, empty);
 }

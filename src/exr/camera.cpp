@@ -33,9 +33,7 @@ void check(const CameraHint& hint) {
   check("--focal-px", hint.focal_px, HUGE_VAL, "a finite number above 0");
   check("--px-per-unit", hint.orthographic_px_per_unit, HUGE_VAL, "a finite number above 0");
   const int given = hint.fov_deg.has_value() + hint.focal_px.has_value() + hint.orthographic_px_per_unit.has_value();
-  if (given > 1) {
-    throw Error(ErrorCode::usage, "camera", std::to_string(given) + " of " + flags, "one of them");
-  }
+  if (given > 1) throw Error(ErrorCode::usage, "camera", std::to_string(given) + " of " + flags, "one of them");
 }
 
 FoundCamera perspective(const Picture& picture, double focal_px, const char* source) {
@@ -51,7 +49,7 @@ double focal_of(double fov_deg, int width_px) { return width_px / (2 * std::tan(
 
 bool is_surface(float depth) { return depth > 0 && depth < background_depth; }
 
-/// Whether there is something at a position: Cycles writes zeros where there is nothing.
+/// True if there is something at a position: Cycles writes zeros where there is nothing.
 bool is_surface(std::span<const float, 3> position) {
   return std::all_of(position.begin(), position.end(), [](float value) { return std::isfinite(value); }) &&
          std::any_of(position.begin(), position.end(), [](float value) { return value != 0; });
@@ -120,7 +118,7 @@ FoundCamera recovered(const Picture& picture, const Roles& roles) {
     throw Error(ErrorCode::role_missing, "camera", source + " that no camera fits (" + why + ")",
                 has_depth ? flags : std::string("a depth pass, with it or with ") + flags);
   }
-  // Without depths a lens far away does as well as parallel rays.
+  // Without depths a lens far away fits as well as parallel rays do.
   const double preference = has_depth ? 1 : 1.5;
   const bool is_perspective = lens.fit && (!parallel.fit || preference * lens.fit->rms_px <= parallel.fit->rms_px);
   const CameraFit& fit = is_perspective ? *lens.fit : *parallel.fit;

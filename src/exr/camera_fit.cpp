@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-#include "exr/robust.hpp"
+#include "exr/outliers.hpp"
 
 namespace dermis::exr {
 namespace {
@@ -49,9 +49,7 @@ Scale scale_of(std::span<const SeenPoint> points) {
   std::array<std::vector<double>, 3> positions;
   for (const SeenPoint& point : points) {
     depths.push_back(point.depth);
-    for (std::size_t k = 0; k < 3; ++k) {
-      positions[k].push_back(point.position[k]);
-    }
+    for (std::size_t k = 0; k < 3; ++k) positions[k].push_back(point.position[k]);
   }
   Scale scale;
   scale.x0_px = (left->x_px + right->x_px) / 2;
@@ -138,14 +136,10 @@ class Fitting {
         return {.fit = {}, .why_not = "all points lie on one plane"};
       }
       axes_ = axes_of(projection_, solution_, scale_);
-      if (!(axes_.pixel() > 0)) {
-        return {.fit = {}, .why_not = "the positions are all the same"};
-      }
+      if (!(axes_.pixel() > 0)) return {.fit = {}, .why_not = "the positions are all the same"};
       errors_px_ = errors_px(system_, solution_);
       std::vector<Eigen::Index> kept = within_limit(errors_px_);
-      if (kept == kept_) {
-        break;
-      }
+      if (kept == kept_) break;
       kept_ = std::move(kept);
     }
     return judge();
@@ -171,9 +165,7 @@ class Fitting {
     std::minstd_rand random;  // the same numbers in every run
     for (int i = 0; i < starts; ++i) {
       std::vector<Eigen::Index> few;
-      for (std::size_t k = 0; k < points_of_start; ++k) {
-        few.push_back(static_cast<Eigen::Index>(random() % n));
-      }
+      for (std::size_t k = 0; k < points_of_start; ++k) few.push_back(static_cast<Eigen::Index>(random() % n));
       const Solution solution = solve(rows_of(system_, few));
       const double error = median(errors_px(judges, solution));
       if (error < least) {
@@ -189,9 +181,7 @@ class Fitting {
     const double limit = limit_px(errors);
     std::vector<Eigen::Index> kept;
     for (std::size_t i = 0; i < errors.size(); ++i) {
-      if (errors[i] <= limit) {
-        kept.push_back(static_cast<Eigen::Index>(i));
-      }
+      if (errors[i] <= limit) kept.push_back(static_cast<Eigen::Index>(i));
     }
     return kept.size() < fewest_points ? kept_ : kept;
   }

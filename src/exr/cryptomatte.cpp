@@ -8,7 +8,7 @@
 
 #include "dermis/error.hpp"
 #include "dermis/exr.hpp"
-#include "exr/text.hpp"
+#include "exr/message_text.hpp"
 
 namespace dermis::exr {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "dermis/error.hpp"
 #include "exr/header_check.hpp"
-#include "exr/text.hpp"
+#include "exr/message_text.hpp"
 
 namespace dermis::exr {
 namespace {
@@ -36,13 +36,9 @@ class HeaderReader {
   std::uint64_t file_bytes() const { return file_bytes_; }
 
   std::string bytes(std::size_t count) {
-    if (count > left_) {
-      damaged(path_, file_bytes_ > largest_header_bytes ? "longer than 64 MB" : "the file ends in it");
-    }
+    if (count > left_) damaged(path_, file_bytes_ > largest_header_bytes ? "longer than 64 MB" : "the file ends in it");
     std::string out(count, '\0');
-    if (!stream_.read(out.data(), static_cast<std::streamsize>(count))) {
-      damaged(path_, "the file ends in it");
-    }
+    if (!stream_.read(out.data(), static_cast<std::streamsize>(count))) damaged(path_, "the file ends in it");
     left_ -= count;
     return out;
   }
@@ -52,9 +48,7 @@ class HeaderReader {
   std::string text() {
     std::string out;
     for (char c = bytes(1)[0]; c != '\0'; c = bytes(1)[0]) {
-      if (out.size() == max_name) {
-        damaged(path_, "a name longer than 255");
-      }
+      if (out.size() == max_name) damaged(path_, "a name longer than 255");
       out += c;
     }
     return out;
@@ -68,12 +62,8 @@ class HeaderReader {
 };
 
 void check_flags(const fs::path& path, std::uint32_t flags) {
-  if ((flags & 0xFF) != 2) {
-    refuse(path, "OpenEXR version " + std::to_string(flags & 0xFF), "version 2");
-  }
-  if ((flags & deep_flag) != 0) {
-    refuse(path, "a deep picture", "a flat one");
-  }
+  if ((flags & 0xFF) != 2) refuse(path, "OpenEXR version " + std::to_string(flags & 0xFF), "version 2");
+  if ((flags & deep_flag) != 0) refuse(path, "a deep picture", "a flat one");
 }
 
 }  // namespace
@@ -85,13 +75,9 @@ std::vector<HeaderAttribute> read_header(const fs::path& path) {
     throw Error(ErrorCode::input_missing, escaped(path.string()), error ? error.message() : "no such file",
                 "an OpenEXR file");
   }
-  if (!fs::is_regular_file(status)) {
-    refuse(path, "a folder or device", "an OpenEXR file");
-  }
+  if (!fs::is_regular_file(status)) refuse(path, "a folder or device", "an OpenEXR file");
   HeaderReader reader(path);
-  if (reader.file_bytes() < 8 || reader.u32() != magic_number) {
-    refuse(path, "another kind of file", "an OpenEXR file");
-  }
+  if (reader.file_bytes() < 8 || reader.u32() != magic_number) refuse(path, "another kind of file", "an OpenEXR file");
   const std::uint32_t flags = reader.u32();
   check_flags(path, flags);
 
@@ -100,16 +86,10 @@ std::vector<HeaderAttribute> read_header(const fs::path& path) {
     std::string type = reader.text();
     std::string value = reader.bytes(reader.u32());
     attributes.push_back({std::move(name), std::move(type), std::move(value)});
-    if (!has_right_size(attributes.back())) {
-      damaged(path, "size of attribute " + escaped(attributes.back().name));
-    }
-    if (attributes.size() > most_attributes) {
-      damaged(path, "more than 10000 attributes");
-    }
+    if (!has_right_size(attributes.back())) damaged(path, "size of attribute " + escaped(attributes.back().name));
+    if (attributes.size() > most_attributes) damaged(path, "more than 10000 attributes");
   }
-  if ((flags & multi_part_flag) != 0 && reader.bytes(1)[0] != '\0') {
-    refuse(path, "several parts", "one part");
-  }
+  if ((flags & multi_part_flag) != 0 && reader.bytes(1)[0] != '\0') refuse(path, "several parts", "one part");
   check_header(path, attributes, reader.file_bytes());
   return attributes;
 }

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "dermis/error.hpp"
-#include "exr/text.hpp"
+#include "exr/message_text.hpp"
 
 namespace dermis::exr {
 namespace {
@@ -92,9 +92,7 @@ class HeaderCheck {
     std::array<std::int64_t, 4> corner;
     for (std::size_t i = 0; i < 4; ++i) {
       corner[i] = std::bit_cast<std::int32_t>(little_endian(value.substr(4 * i)));
-      if (std::abs(corner[i]) > max_coordinate) {
-        damaged(path_, std::string(name) + " at " + std::to_string(corner[i]));
-      }
+      if (std::abs(corner[i]) > max_coordinate) damaged(path_, std::string(name) + " at " + std::to_string(corner[i]));
     }
     const Box sides = {corner[2] - corner[0] + 1, corner[3] - corner[1] + 1};
     if (std::min(sides.width, sides.height) < 1 || std::max(sides.width, sides.height) > max_side_px) {
@@ -110,28 +108,20 @@ class HeaderCheck {
     std::set<std::string_view> names;
     while (!list.empty() && list[0] != '\0') {
       const std::size_t end = list.find('\0');
-      if (end > max_name || list.size() < end + 17) {
-        damaged(path_, "channels");
-      }
+      if (end > max_name || list.size() < end + 17) damaged(path_, "channels");
       const std::string_view name = list.substr(0, end);
-      if (!names.insert(name).second) {
-        damaged(path_, "channel " + escaped(name) + " twice");
-      }
+      if (!names.insert(name).second) damaged(path_, "channel " + escaped(name) + " twice");
       check_channel(name, list.substr(end + 1, 16));
       list.remove_prefix(end + 17);
     }
-    if (list.size() != 1) {
-      damaged(path_, "channels");
-    }
+    if (list.size() != 1) damaged(path_, "channels");
     if (names.empty() || names.size() > static_cast<std::size_t>(max_channels)) {
       refuse(path_, std::to_string(names.size()) + " channels", "1 to " + std::to_string(max_channels));
     }
   }
 
   void check_channel(std::string_view name, std::string_view facts) const {
-    if (little_endian(facts) > 2) {
-      damaged(path_, "type of channel " + escaped(name));
-    }
+    if (little_endian(facts) > 2) damaged(path_, "type of channel " + escaped(name));
     if (little_endian(facts.substr(8)) != 1 || little_endian(facts.substr(12)) != 1) {
       refuse(path_, "channel " + escaped(name) + " at a lower resolution", "all channels at one resolution");
     }
@@ -157,9 +147,7 @@ class HeaderCheck {
     // none, rle, zips, zip, piz, pxr24, b44, b44a, dwaa, dwab
     constexpr std::array<std::uint64_t, 10> rows = {1, 1, 1, 16, 32, 16, 32, 32, 32, 256};
     const auto index = static_cast<unsigned char>(compression);
-    if (index >= rows.size()) {
-      refuse(path_, "compression " + std::to_string(index), "0 to 9");
-    }
+    if (index >= rows.size()) refuse(path_, "compression " + std::to_string(index), "0 to 9");
     return rows[index];
   }
 
@@ -188,9 +176,7 @@ std::uint32_t little_endian(std::string_view bytes) {
 bool has_right_size(const HeaderAttribute& attribute) {
   if (attribute.type == "preview") {
     const std::string_view value = attribute.value;
-    if (value.size() < 8) {
-      return false;
-    }
+    if (value.size() < 8) return false;
     const std::uint64_t pixels = std::uint64_t{little_endian(value)} * little_endian(value.substr(4));
     return pixels <= value.size() && 4 * pixels == value.size() - 8;
   }

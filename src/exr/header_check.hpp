@@ -1,4 +1,4 @@
-/// What a header must be like before a reader may trust it.
+/// The conditions under which a reader may trust a header.
 #pragma once
 
 #include <cstdint>

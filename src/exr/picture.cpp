@@ -10,8 +10,8 @@
 #include "dermis/error.hpp"
 #include "dermis/exr.hpp"
 #include "exr/header.hpp"
+#include "exr/message_text.hpp"
 #include "exr/picture_state.hpp"
-#include "exr/text.hpp"
 
 namespace dermis::exr {
 namespace {
@@ -39,9 +39,7 @@ const Channel& existing(const Picture& picture, std::string_view name) {
 
 std::string joined(std::span<const std::string> names) {
   std::string out;
-  for (const std::string& name : names) {
-    out += (out.empty() ? "" : ", ") + escaped(name);
-  }
+  for (const std::string& name : names) out += (out.empty() ? "" : ", ") + escaped(name);
   return out;
 }
 
@@ -58,9 +56,7 @@ Layout layout_of(const Picture& picture, std::span<const std::string> names, con
   if (names.size() == 3) {
     const Channel& second = existing(picture, names[1]);
     const Channel& third = existing(picture, names[2]);
-    if (second.format != first.format || third.format != first.format) {
-      unsuitable(names, "several formats");
-    }
+    if (second.format != first.format || third.format != first.format) unsuitable(names, "several formats");
     stride = static_cast<std::ptrdiff_t>(second.byte_offset) - static_cast<std::ptrdiff_t>(first.byte_offset);
     const auto next = static_cast<std::ptrdiff_t>(third.byte_offset) - static_cast<std::ptrdiff_t>(second.byte_offset);
     if (next != stride || stride == 0) {  // a stride of 0 would mean packed
@@ -162,17 +158,13 @@ void Picture::add_channels(std::span<const std::string> names, Format format) {
     }
     const bool listed =
         std::any_of(more.begin(), more.end(), [&name](const ChannelName& channel) { return channel.name == name; });
-    if (find(name) == nullptr && !listed) {
-      more.push_back({name, format});
-    }
+    if (find(name) == nullptr && !listed) more.push_back({name, format});
   }
   const std::size_t count = channels().size() + more.size();
   if (count > static_cast<std::size_t>(max_channels)) {
     throw Error(ErrorCode::usage, "channels", std::to_string(count), "at most " + std::to_string(max_channels));
   }
-  if (!more.empty()) {
-    state_->pixels = state_->pixels.with(more);
-  }
+  if (!more.empty()) state_->pixels = state_->pixels.with(more);
 }
 
 Image Picture::view(std::span<const std::string> names) const {

@@ -8,9 +8,9 @@
 #include "dermis/error.hpp"
 #include "dermis/exr.hpp"
 #include "exr/header.hpp"
+#include "exr/message_text.hpp"
 #include "exr/picture_state.hpp"
-#include "exr/quiet.hpp"
-#include "exr/text.hpp"
+#include "exr/quiet_oiio.hpp"
 
 namespace dermis::exr {
 namespace {
@@ -45,8 +45,8 @@ bool has_attribute(const std::vector<HeaderAttribute>& header, std::string_view 
                      [name](const HeaderAttribute& attribute) { return attribute.name == name; });
 }
 
-/// What is left of a file's description for the next file: no channels, no tiles, no attributes that the reader made
-/// up.
+/// The part of a file's description that the next file keeps: it has no channels, no tiles and no attributes that the
+/// reader made up.
 OIIO::ImageSpec windows_and_attributes(OIIO::ImageSpec spec, const std::vector<HeaderAttribute>& header) {
   spec.nchannels = 0;
   spec.channelnames.clear();
@@ -59,16 +59,12 @@ OIIO::ImageSpec windows_and_attributes(OIIO::ImageSpec spec, const std::vector<H
   for (const char* name : {"compression", "openexr:lineOrder", "openexr:levelmode", "openexr:roundingmode"}) {
     spec.erase_attribute(name);
   }
-  if (!has_attribute(header, "ResolutionUnit")) {
-    spec.erase_attribute("ResolutionUnit");
-  }
+  if (!has_attribute(header, "ResolutionUnit")) spec.erase_attribute("ResolutionUnit");
   return spec;
 }
 
 int rows_at_once(const OIIO::ImageSpec& spec, const PixelBlock& pixels) {
-  if (spec.tile_width > 0) {
-    return spec.tile_height;
-  }
+  if (spec.tile_width > 0) return spec.tile_height;
   const std::size_t rows = batch_bytes / pixels.packed_row_bytes() / smallest_batch_rows * smallest_batch_rows;
   return std::clamp(static_cast<int>(std::min<std::size_t>(rows, largest_batch_rows)), smallest_batch_rows,
                     largest_batch_rows);
@@ -86,9 +82,7 @@ bool read_pixels(OIIO::ImageInput& input, const OIIO::ImageSpec& spec, PixelBloc
                                                            spec.nchannels, OIIO::TypeUnknown, packed.get())
                                         : input.read_scanlines(0, 0, y, y + rows, 0, 0, spec.nchannels,
                                                                OIIO::TypeUnknown, packed.get());
-    if (!ok) {
-      return false;
-    }
+    if (!ok) return false;
     pixels.unpack(packed.get(), row, rows);
   }
   return true;
@@ -106,18 +100,12 @@ Picture Picture::read(const std::filesystem::path& path) {
   try {
     const auto input = OIIO::ImageInput::create("openexr");
     OIIO::ImageSpec spec;
-    if (!input) {
-      unreadable(path, OIIO::geterror());
-    }
-    if (!input->open(path.string(), spec)) {
-      unreadable(path, input->geterror());
-    }
+    if (!input) unreadable(path, OIIO::geterror());
+    if (!input->open(path.string(), spec)) unreadable(path, input->geterror());
     Picture picture({spec.x, spec.y, spec.width, spec.height},
                     {spec.full_x, spec.full_y, spec.full_width, spec.full_height});
     picture.state_->pixels = PixelBlock(spec.width, spec.height, channels_of(spec));
-    if (!read_pixels(*input, spec, picture.state_->pixels)) {
-      unreadable(path, input->geterror());
-    }
+    if (!read_pixels(*input, spec, picture.state_->pixels)) unreadable(path, input->geterror());
     picture.state_->compression = spec.get_string_attribute("compression", "zip");
     picture.state_->spec = windows_and_attributes(std::move(spec), header);
     return picture;

@@ -1,4 +1,4 @@
-/// What a picture holds.
+/// The inside of a Picture.
 #pragma once
 
 #include <OpenImageIO/imageio.h>

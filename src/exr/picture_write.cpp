@@ -8,10 +8,10 @@
 
 #include "dermis/error.hpp"
 #include "dermis/exr.hpp"
+#include "exr/message_text.hpp"
 #include "exr/picture_state.hpp"
-#include "exr/quiet.hpp"
+#include "exr/quiet_oiio.hpp"
 #include "exr/temporary_file.hpp"
-#include "exr/text.hpp"
 
 namespace dermis::exr {
 namespace {
@@ -26,9 +26,7 @@ bool among(std::span<const std::string_view> names, std::string_view name) {
 }
 
 std::string chosen_compression(std::string_view wanted, const std::string& of_file) {
-  if (wanted.empty()) {
-    return among(lossless, of_file) ? of_file : "zip";
-  }
+  if (wanted.empty()) return among(lossless, of_file) ? of_file : "zip";
   std::string name = lower(wanted);
   if (!among(lossless, name) && !among(lossy, name)) {
     throw Error(ErrorCode::usage, "compression", escaped(wanted),
@@ -63,9 +61,7 @@ std::string write_pixels(OIIO::ImageOutput& output, const OIIO::ImageSpec& spec,
     const int rows = std::min(step, pixels.height() - row);
     pixels.pack(packed.get(), row, rows);
     const int y = spec.y + row;
-    if (!output.write_scanlines(y, y + rows, 0, OIIO::TypeUnknown, packed.get())) {
-      return output.geterror();
-    }
+    if (!output.write_scanlines(y, y + rows, 0, OIIO::TypeUnknown, packed.get())) return output.geterror();
   }
   return output.close() ? "" : output.geterror();
 }
@@ -73,12 +69,8 @@ std::string write_pixels(OIIO::ImageOutput& output, const OIIO::ImageSpec& spec,
 std::string write_to(std::FILE* stream, const OIIO::ImageSpec& spec, const PixelBlock& pixels) {
   OIIO::Filesystem::IOFile proxy(stream, OIIO::Filesystem::IOProxy::Write);
   const auto output = OIIO::ImageOutput::create("openexr");
-  if (!output) {
-    return OIIO::geterror();
-  }
-  if (!output->set_ioproxy(&proxy) || !output->open("picture.exr", spec)) {
-    return output->geterror();
-  }
+  if (!output) return OIIO::geterror();
+  if (!output->set_ioproxy(&proxy) || !output->open("picture.exr", spec)) return output->geterror();
   return write_pixels(*output, spec, pixels);
 }
 
@@ -90,16 +82,12 @@ void Picture::write(const std::filesystem::path& path, std::string_view compress
   const auto fail = [&path](std::string_view why) {
     throw Error(ErrorCode::output, escaped(path.string()), escaped(why), "a file that can be written");
   };
-  if (pixels.channels().empty()) {
-    fail("a picture without channels");
-  }
+  if (pixels.channels().empty()) fail("a picture without channels");
   const Quiet quiet;
   try {
     TemporaryFile file(path);
     const std::string error = write_to(file.stream(), spec_to_write(state_->spec, pixels, method), pixels);
-    if (!error.empty()) {
-      fail(error);
-    }
+    if (!error.empty()) fail(error);
     file.commit();
   } catch (const Error&) {
     throw;

@@ -8,9 +8,7 @@ namespace dermis::exr {
 
 PixelBlock::PixelBlock(int width, int height, std::span<const ChannelName> channels) : width_(width), height_(height) {
   channels_.reserve(channels.size());
-  for (const ChannelName& channel : channels) {
-    channels_.push_back({channel.name, channel.format, 0});
-  }
+  for (const ChannelName& channel : channels) channels_.push_back({channel.name, channel.format, 0});
   const std::size_t wide_end = place(4, 0);
   const std::size_t end = place(2, wide_end);
   pixel_bytes_ = wide_end > 0 ? (end + 3) / 4 * 4 : end;
@@ -51,9 +49,7 @@ std::size_t PixelBlock::packed_row_bytes() const { return packed_pixel_bytes_ * 
 void PixelBlock::unpack(const std::byte* packed, int first_row, int rows) {
   std::byte* pixel = row(first_row);
   for (std::int64_t i = 0; i < std::int64_t{rows} * width_; ++i) {
-    for (const Run& run : runs_) {
-      std::memcpy(pixel + run.offset, packed + run.packed_offset, run.bytes);
-    }
+    for (const Run& run : runs_) std::memcpy(pixel + run.offset, packed + run.packed_offset, run.bytes);
     pixel += pixel_bytes_;
     packed += packed_pixel_bytes_;
   }
@@ -62,9 +58,7 @@ void PixelBlock::unpack(const std::byte* packed, int first_row, int rows) {
 void PixelBlock::pack(std::byte* packed, int first_row, int rows) const {
   const std::byte* pixel = row(first_row);
   for (std::int64_t i = 0; i < std::int64_t{rows} * width_; ++i) {
-    for (const Run& run : runs_) {
-      std::memcpy(packed + run.packed_offset, pixel + run.offset, run.bytes);
-    }
+    for (const Run& run : runs_) std::memcpy(packed + run.packed_offset, pixel + run.offset, run.bytes);
     pixel += pixel_bytes_;
     packed += packed_pixel_bytes_;
   }
@@ -72,9 +66,7 @@ void PixelBlock::pack(std::byte* packed, int first_row, int rows) const {
 
 PixelBlock PixelBlock::with(std::span<const ChannelName> more) const {
   std::vector<ChannelName> all;
-  for (const Channel& channel : channels_) {
-    all.push_back({channel.name, channel.format});
-  }
+  for (const Channel& channel : channels_) all.push_back({channel.name, channel.format});
   all.insert(all.end(), more.begin(), more.end());
 
   PixelBlock out(width_, height_, all);

@@ -40,7 +40,7 @@ class PixelBlock {
   void unpack(const std::byte* packed, int first_row, int rows);
   void pack(std::byte* packed, int first_row, int rows) const;
 
-  /// The same pixels with more channels, those zero.
+  /// A copy of the pixels with more channels, which are zero.
   PixelBlock with(std::span<const ChannelName> more) const;
 
  private:

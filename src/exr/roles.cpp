@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -7,58 +8,44 @@
 
 #include "dermis/error.hpp"
 #include "dermis/exr.hpp"
-#include "exr/catalogue.hpp"
-#include "exr/override.hpp"
-#include "exr/text.hpp"
+#include "exr/channel_catalogue.hpp"
+#include "exr/message_text.hpp"
+#include "exr/role_override.hpp"
 
 namespace dermis::exr {
 namespace {
 
-using Names = std::span<const std::string_view>;
-
-// Pass names in lower case: those of Blender up to 4, then those of Blender 5.
-constexpr std::array<std::string_view, 2> diffuse_direct = {"diffdir", "diffuse direct"};
-constexpr std::array<std::string_view, 2> diffuse_indirect = {"diffind", "diffuse indirect"};
-constexpr std::array<std::string_view, 2> diffuse_color = {"diffcol", "diffuse color"};
-constexpr std::array<std::string_view, 2> glossy_direct = {"glossdir", "glossy direct"};
-constexpr std::array<std::string_view, 2> glossy_indirect = {"glossind", "glossy indirect"};
-constexpr std::array<std::string_view, 2> depth = {"depth", "z"};
-constexpr std::array<std::string_view, 1> position = {"position"};
-constexpr std::array<std::string_view, 1> normal = {"normal"};
-constexpr std::array<std::string_view, 2> material_index = {"indexma", "material index"};
-constexpr std::array<std::string_view, 1> mask = {"mask"};
-constexpr std::array<std::string_view, 1> thickness = {"thickness"};
-constexpr std::array<std::string_view, 2> combined = {"combined", ""};  // "": R, G and B of the layer itself
-
-/// How one pass of a role is called; a role is the sum of its passes.
+/// One pass of a role. A role is the sum of its passes.
 struct Pass {
   Role role;
-  Names names;
+  std::array<std::optional<std::string_view>, 2> names;  ///< in lower case: Blender up to 4, then 5 if that differs
 };
 
-constexpr std::array<Pass, 12> passes = {{{Role::light, diffuse_direct},
-                                          {Role::light, diffuse_indirect},
-                                          {Role::albedo, diffuse_color},
-                                          {Role::depth, depth},
-                                          {Role::position, position},
-                                          {Role::normal, normal},
-                                          {Role::material, material_index},
-                                          {Role::mask, mask},
-                                          {Role::specular, glossy_direct},
-                                          {Role::specular, glossy_indirect},
-                                          {Role::beauty, combined},
-                                          {Role::thickness, thickness}}};
+/// The names that renderers give channels. "" stands for R, G and B of the layer itself.
+constexpr std::array passes = {
+    Pass{Role::light, {"diffdir", "diffuse direct"}},
+    Pass{Role::light, {"diffind", "diffuse indirect"}},
+    Pass{Role::albedo, {"diffcol", "diffuse color"}},
+    Pass{Role::depth, {"depth", "z"}},
+    Pass{Role::position, {"position"}},
+    Pass{Role::normal, {"normal"}},
+    Pass{Role::material, {"indexma", "material index"}},
+    Pass{Role::mask, {"mask"}},
+    Pass{Role::specular, {"glossdir", "glossy direct"}},
+    Pass{Role::specular, {"glossind", "glossy indirect"}},
+    Pass{Role::beauty, {"combined", ""}},
+    Pass{Role::thickness, {"thickness"}},
+};
 
 std::vector<std::string> find_pass(const Catalogue& catalogue, std::string_view layer, const Pass& pass) {
-  for (const std::string_view name : pass.names) {
-    const std::string prefix = with_dot(layer, name);
+  for (const auto& name : pass.names) {
+    if (!name) break;
+    const std::string prefix = with_dot(layer, *name);
     // Plain X, Y, Z outside passes are no picture.
-    const auto choices = std::span(triple_endings).first(name.empty() ? 1 : 2);
+    const auto choices = std::span(triple_endings).first(name->empty() ? 1 : 2);
     std::vector<std::string> group =
-        values_of(pass.role) == 3 ? catalogue.triple(prefix, choices) : catalogue.single(prefix);
-    if (!group.empty()) {
-      return group;
-    }
+        info_of(pass.role).values == 3 ? catalogue.triple(prefix, choices) : catalogue.single(prefix);
+    if (!group.empty()) return group;
   }
   return {};
 }
@@ -74,9 +61,7 @@ ChannelSum find_role(const Catalogue& catalogue, std::string_view layer, Role ro
         }
       }
     }
-    if (!sum.empty()) {
-      return sum;
-    }
+    if (!sum.empty()) return sum;
   }
   return {};
 }
@@ -85,14 +70,12 @@ ChannelSum find_role(const Catalogue& catalogue, std::string_view layer, Role ro
 /// not of the pass.
 bool cut_pass(std::string_view& name, const Pass& pass) {
   const std::size_t dot = name.rfind('.');
-  if (dot == std::string_view::npos) {
-    return false;
-  }
+  if (dot == std::string_view::npos) return false;
   const std::string_view before_ending = name.substr(0, dot);
-  for (const std::string_view pass_name : pass.names) {
-    const bool ends = !pass_name.empty() && before_ending.ends_with(pass_name);
-    const std::size_t layer_size = before_ending.size() - (ends ? pass_name.size() : 0);
-    if (ends && (layer_size == 0 || name[layer_size - 1] == '.')) {
+  for (const auto& pass_name : pass.names) {
+    if (!pass_name || pass_name->empty() || !before_ending.ends_with(*pass_name)) continue;
+    const std::size_t layer_size = before_ending.size() - pass_name->size();
+    if (layer_size == 0 || name[layer_size - 1] == '.') {
       name = name.substr(0, layer_size == 0 ? 0 : layer_size - 1);
       return true;
     }
@@ -100,18 +83,15 @@ bool cut_pass(std::string_view& name, const Pass& pass) {
   return false;
 }
 
-/// The layers that have a pass of any of these roles, in the order of the channels, each once.
-std::vector<std::string> layers_with(const Catalogue& catalogue, std::span<const Role> roles) {
+/// The layers that have a pass of the role, or of any role, in the order of the channels, each once.
+std::vector<std::string> layers_with(const Catalogue& catalogue, std::optional<Role> role) {
   std::vector<std::string> layers;
   for (std::size_t i = 0; i < catalogue.size(); ++i) {
     for (const Pass& pass : passes) {
       std::string_view layer = catalogue.lower_name_at(i);
-      const bool wanted = std::find(roles.begin(), roles.end(), pass.role) != roles.end();
-      if (wanted && cut_pass(layer, pass)) {
+      if ((!role || pass.role == *role) && cut_pass(layer, pass)) {
         std::string name = catalogue.name_at(i).substr(0, layer.size());
-        if (std::find(layers.begin(), layers.end(), name) == layers.end()) {
-          layers.push_back(std::move(name));
-        }
+        if (std::find(layers.begin(), layers.end(), name) == layers.end()) layers.push_back(std::move(name));
       }
     }
   }
@@ -121,9 +101,7 @@ std::vector<std::string> layers_with(const Catalogue& catalogue, std::span<const
 std::string listed(const std::vector<std::string>& layers) {
   std::string out;
   for (const std::string& layer : layers) {
-    if (!layer.empty()) {
-      out += (out.empty() ? "" : ", ") + escaped(layer);
-    }
+    if (!layer.empty()) out += (out.empty() ? "" : ", ") + escaped(layer);
   }
   return out;
 }
@@ -132,19 +110,13 @@ std::string named_layer(const Catalogue& catalogue, std::string_view wanted) {
   const std::string prefix = lower(wanted) + '.';
   std::string any_case;
   for (std::size_t i = 0; i < catalogue.size(); ++i) {
-    if (!catalogue.lower_name_at(i).starts_with(prefix)) {
-      continue;
-    }
+    if (!catalogue.lower_name_at(i).starts_with(prefix)) continue;
     std::string name = catalogue.name_at(i).substr(0, wanted.size());
-    if (name == wanted) {
-      return name;
-    }
-    if (any_case.empty()) {
-      any_case = std::move(name);
-    }
+    if (name == wanted) return name;
+    if (any_case.empty()) any_case = std::move(name);
   }
   if (any_case.empty()) {
-    const std::string layers = listed(layers_with(catalogue, all_roles));
+    const std::string layers = listed(layers_with(catalogue, std::nullopt));
     throw Error(ErrorCode::role_missing, "layer", escaped(wanted),
                 layers.empty() ? "none: there are " + catalogue.all() : "one of " + layers);
   }
@@ -152,49 +124,44 @@ std::string named_layer(const Catalogue& catalogue, std::string_view wanted) {
 }
 
 std::string chosen_layer(const Catalogue& catalogue, std::string_view wanted) {
-  if (!wanted.empty()) {
-    return named_layer(catalogue, wanted);
-  }
-  constexpr std::array<Role, 1> diffuse = {Role::light};
-  std::vector<std::string> layers = layers_with(catalogue, diffuse);
-  if (layers.empty()) {
-    layers = layers_with(catalogue, all_roles);
-  }
+  if (!wanted.empty()) return named_layer(catalogue, wanted);
+  std::vector<std::string> layers = layers_with(catalogue, Role::light);
+  if (layers.empty()) layers = layers_with(catalogue, std::nullopt);
   return layers.empty() ? "" : layers.front();
 }
 
 }  // namespace
 
-std::string_view name_of(Role role) {
-  constexpr std::array<std::string_view, all_roles.size()> names = {
-      "light", "albedo",   "depth",  "position",  "normal",    "material", "mask",
-      "matte", "specular", "beauty", "stretch_u", "stretch_v", "thickness"};
-  return names[static_cast<std::size_t>(role)];
+static_assert([] {
+  for (std::size_t i = 0; i < role_table.size(); ++i) {
+    if (role_table[i].role != static_cast<Role>(i)) return false;
+  }
+  return true;
+}());
+
+std::string role_names() {
+  std::string out;
+  for (const RoleInfo& info : role_table) out += (out.empty() ? "" : ", ") + std::string(info.name);
+  return out;
 }
 
 Roles find_roles(const Picture& picture, std::span<const std::string> overrides, std::string_view layer) {
   std::vector<Override> parsed;
-  for (const std::string& text : overrides) {
-    parsed.emplace_back(text);
-  }
+  for (const std::string& text : overrides) parsed.emplace_back(text);
   const Catalogue catalogue(picture);
   Roles roles;
   roles.layer = chosen_layer(catalogue, layer);
-  for (const Role role : all_roles) {
-    roles[role] = find_role(catalogue, roles.layer, role);
-  }
-  for (const Override& change : parsed) {
-    roles[change.role()] = change.resolve(catalogue);
-  }
+  for (const RoleInfo& info : role_table) roles[info.role] = find_role(catalogue, roles.layer, info.role);
+  for (const Override& change : parsed) roles[change.role()] = change.resolve(catalogue);
   return roles;
 }
 
 std::vector<float> load(const Picture& picture, const Roles& roles, Role role) {
   std::vector<float> out;
   for (const std::vector<std::string>& group : roles[role]) {
-    if (group.size() != values_of(role)) {
+    if (group.size() != info_of(role).values) {
       throw Error(ErrorCode::usage, name_of(role), std::to_string(group.size()) + " channels",
-                  std::to_string(values_of(role)));
+                  std::to_string(info_of(role).values));
     }
     const bool first = out.empty();
     for (std::size_t c = 0; c < group.size(); ++c) {

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "dermis/error.hpp"
-#include "exr/text.hpp"
+#include "exr/message_text.hpp"
 
 namespace dermis::exr {
 namespace {
@@ -42,19 +42,13 @@ TemporaryFile::TemporaryFile(fs::path target) : target_(std::move(target)) {
   for (int i = 0; i < attempts && stream_ == nullptr; ++i) {
     path_ = random_name(target_.parent_path());
     stream_ = std::fopen(path_.c_str(), "wbx");  // x: fails if the name is taken, even by a link
-    if (stream_ == nullptr && errno != EEXIST) {
-      break;
-    }
+    if (stream_ == nullptr && errno != EEXIST) break;
   }
-  if (stream_ == nullptr) {
-    cannot_write(target_, reason(errno));
-  }
+  if (stream_ == nullptr) cannot_write(target_, reason(errno));
 }
 
 TemporaryFile::~TemporaryFile() {
-  if (stream_ != nullptr) {
-    std::fclose(stream_);
-  }
+  if (stream_ != nullptr) std::fclose(stream_);
   if (!path_.empty()) {
     std::error_code ignored;
     fs::remove(path_, ignored);
@@ -68,14 +62,10 @@ void TemporaryFile::commit() {
   }
   std::FILE* stream = stream_;
   stream_ = nullptr;
-  if (std::fclose(stream) != 0) {
-    cannot_write(target_, reason(errno));
-  }
+  if (std::fclose(stream) != 0) cannot_write(target_, reason(errno));
   std::error_code error;
   fs::rename(path_, target_, error);
-  if (error) {
-    cannot_write(target_, error.message());
-  }
+  if (error) cannot_write(target_, error.message());
   path_.clear();
 }
 

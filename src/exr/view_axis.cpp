@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "exr/robust.hpp"
+#include "exr/outliers.hpp"
 
 namespace dermis::exr {
 namespace {

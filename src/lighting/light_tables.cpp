@@ -129,7 +129,7 @@ class CheckedLight {
 
   bool is_projective() const { return light_.map.kind == MapDepth::projective; }
 
-  /// Whether two directions are the same or opposite ones, to a thousandth.
+  /// True if two directions are the same or opposite ones, to a thousandth.
   static bool are_parallel(const Vector& a, const Vector& b) {
     return std::abs(std::abs(dot(a, b)) - length(a) * length(b)) <= 1e-6 * length(a) * length(b);
   }
@@ -204,8 +204,7 @@ std::vector<params::LightParams> make_light_params(std::span<const Light> lights
 }
 
 BoundLights::BoundLights(const cl::Context& context, const cl::CommandQueue& queue, const cl::Program& program,
-                         std::span<const Light> lights)
-    : count_(static_cast<int>(lights.size())) {
+                         std::span<const Light> lights) {
   const std::vector<params::LightParams> all = make_light_params(lights);
   std::size_t texels = 1;  // a buffer has at least one byte
   for (const params::LightParams& light : all) texels += std::size_t{1} * light.map_width * light.map_height;

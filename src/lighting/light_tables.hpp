@@ -21,12 +21,10 @@ class BoundLights {
   BoundLights(const cl::Context& context, const cl::CommandQueue& queue, const cl::Program& program,
               std::span<const Light> lights);
 
-  int count() const { return count_; }
   const cl::Buffer& lights() const { return lights_; }
   const cl::Buffer& maps() const { return maps_; }
 
  private:
-  int count_;
   cl::Buffer lights_;
   cl::Buffer maps_;
 };

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <string>
 
+#include "lighting/check_range.hpp"
 #include "lighting/highlight_tables.hpp"
 #include "lighting/light_tables.hpp"
 #include "opencl/device_cache.hpp"
@@ -19,10 +20,6 @@ namespace {
 enum Name { position, normal, albedo, light, seen, specular, beauty };
 constexpr int image_count = beauty + 1;
 using Images = std::array<CallerImage, image_count>;
-
-void check_range(const char* argument, double value, double low, double high, const char* wanted) {
-  if (!(value >= low && value <= high)) throw Error(ErrorCode::usage, argument, std::to_string(value), wanted);
-}
 
 void check_options(const ShadingOptions& options) {
   if (options.lobes.size() > 4) {
@@ -54,16 +51,14 @@ Images check_images(const ShadingFrame& frame) {
   return images;
 }
 
-/// The place of an eye with w = 1, or the direction to the viewer with w = 0.
-cl_float4 viewer_of(const Viewer& viewer) {
+/// The place of an eye and 1, or the direction to the viewer and 0.
+std::array<double, 4> viewer_of(const Viewer& viewer) {
   for (const double value : viewer.place) check_range("viewer", value, -1e18, 1e18, "three finite numbers");
   const auto& [x, y, z] = viewer.place;
-  if (viewer.projection == Camera::Projection::perspective) {
-    return {{static_cast<float>(x), static_cast<float>(y), static_cast<float>(z), 1}};
-  }
+  if (viewer.projection == Camera::Projection::perspective) return {x, y, z, 1};
   const double length = std::hypot(x, y, z);
   check_range("viewer direction length", length, 1e-18, 1e18, "a length above 0");
-  return {{static_cast<float>(-x / length), static_cast<float>(-y / length), static_cast<float>(-z / length), 0}};
+  return {-x / length, -y / length, -z / length, 0};
 }
 
 }  // namespace
@@ -76,6 +71,8 @@ struct Shading::State {
   cl::Buffer tables;
   cl::Buffer reflected;
   double seen_gain;  ///< 1 / (1 - rho_mean)
+
+  params::ShadingParams params_of(const ShadingFrame& frame) const;
 };
 
 Shading::Shading(const Device& device, const ShadingOptions& options) {
@@ -96,27 +93,41 @@ Shading::~Shading() = default;
 Shading::Shading(Shading&&) noexcept = default;
 Shading& Shading::operator=(Shading&&) noexcept = default;
 
+params::ShadingParams Shading::State::params_of(const ShadingFrame& frame) const {
+  const std::array<double, 4> viewer = viewer_of(frame.viewer);
+  params::ShadingParams p{};
+  std::transform(viewer.begin(), viewer.end(), p.viewer, [](double value) { return static_cast<float>(value); });
+  p.width = frame.width;
+  p.lights = static_cast<int>(frame.lights.size());
+  p.writes_light = frame.light ? 1 : 0;
+  p.writes_seen = frame.seen ? 1 : 0;
+  p.writes_specular = frame.specular ? 1 : 0;
+  p.writes_beauty = frame.beauty ? 1 : 0;
+  p.beckmann = beckmann;
+  p.reflectance = static_cast<float>(options.reflectance);
+  p.seen_gain = static_cast<float>(seen_gain);
+  p.offset_texels = static_cast<float>((options.normal_offset_texels + options.softness_texels) * std::numbers::sqrt2);
+  p.softness_texels = static_cast<float>(options.softness_texels);
+  return p;
+}
+
 void Shading::run(const ShadingFrame& frame) const {
   const Images images = check_images(frame);
-  make_light_params(frame.lights);  // what is wrong with them, before anything is done
-  const cl_float4 viewer = viewer_of(frame.viewer);
+  make_light_params(frame.lights);  // throws if one is wrong, before anything is done
+  const params::ShadingParams params = state_->params_of(frame);
   with_device_errors([&] {
     const cl::Context context(state_->device.context(), true);
     const cl::CommandQueue queue = cache_of(state_->device).queue(state_->device);
     const ImageBuffers memory(context, frame.width, frame.height, images);
     check_outputs(memory, images, {{light, -1}, {seen, albedo}, {specular, -1}, {beauty, -1}});
     const BoundLights lights(context, queue, state_->program, frame.lights);
-    const double offset_texels =
-        (state_->options.normal_offset_texels + state_->options.softness_texels) * std::numbers::sqrt2;
+    const params::ShadingImages layouts = {memory.layout(position), memory.layout(normal), memory.layout(albedo),
+                                           memory.layout(light),    memory.layout(seen),   memory.layout(specular),
+                                           memory.layout(beauty)};
     const auto output = [&](Name name) { return memory.buffer(memory.has(name) ? name : position); };
-    run_per_pixel(queue, state_->program, "shade", frame.width, frame.height, frame.width, memory.buffer(position),
-                  memory.layout(position), memory.buffer(normal), memory.layout(normal), memory.buffer(albedo),
-                  memory.layout(albedo), output(light), memory.layout(light), output(seen), memory.layout(seen),
-                  output(specular), memory.layout(specular), output(beauty), memory.layout(beauty), frame.light ? 1 : 0,
-                  frame.seen ? 1 : 0, frame.specular ? 1 : 0, frame.beauty ? 1 : 0, lights.lights(), lights.count(),
-                  lights.maps(), state_->tables, state_->beckmann, state_->reflected,
-                  static_cast<float>(state_->options.reflectance), static_cast<float>(state_->seen_gain), viewer,
-                  static_cast<float>(offset_texels), static_cast<float>(state_->options.softness_texels));
+    run_per_pixel(queue, state_->program, "shade", frame.width, frame.height, layouts, params, memory.buffer(position),
+                  memory.buffer(normal), memory.buffer(albedo), output(light), output(seen), output(specular),
+                  output(beauty), lights.lights(), lights.maps(), state_->tables, state_->reflected);
     queue.finish();
     memory.read_back(queue);
   });

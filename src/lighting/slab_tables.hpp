@@ -1,4 +1,4 @@
-// What comes through slabs of each material, tabulated.
+// Transmittance of slabs of each material, tabulated.
 #pragma once
 
 #include <array>

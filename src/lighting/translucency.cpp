@@ -4,6 +4,7 @@
 #include <array>
 #include <string>
 
+#include "lighting/check_range.hpp"
 #include "lighting/light_tables.hpp"
 #include "lighting/slab_tables.hpp"
 #include "opencl/device_cache.hpp"
@@ -18,10 +19,6 @@ namespace {
 enum Name { light, albedo, position, normal, material, mask, thickness, beauty, lit, result };
 constexpr int image_count = result + 1;
 using Images = std::array<CallerImage, image_count>;
-
-void check_range(const char* argument, double value, double low, double high, const char* wanted) {
-  if (!(value >= low && value <= high)) throw Error(ErrorCode::usage, argument, std::to_string(value), wanted);
-}
 
 void check_options(const TranslucencyOptions& options) {
   check_range("shrink_units", options.shrink_units, 0, 1e18, "0..1e18 scene units");
@@ -79,6 +76,9 @@ struct Translucency::State {
   cl::Program program;
   cl::Buffer slabs;
   cl::Buffer tables;
+
+  /// All but which inputs are copied.
+  params::TranslucencyParams params_of(const TranslucencyFrame& frame) const;
 };
 
 Translucency::Translucency(const Device& device, const std::vector<Material>& materials,
@@ -106,27 +106,40 @@ Translucency::~Translucency() = default;
 Translucency::Translucency(Translucency&&) noexcept = default;
 Translucency& Translucency::operator=(Translucency&&) noexcept = default;
 
+params::TranslucencyParams Translucency::State::params_of(const TranslucencyFrame& frame) const {
+  params::TranslucencyParams p{};
+  p.width = frame.width;
+  p.lights = static_cast<int>(frame.lights.size());
+  p.writes_lit = frame.lit ? 1 : 0;
+  p.writes_result = frame.result ? 1 : 0;
+  p.mm_per_unit = static_cast<float>(frame.mm_per_unit);
+  p.thickness_scale = static_cast<float>(options.thickness_scale);
+  p.shrink_units = static_cast<float>(options.shrink_units);
+  p.softness_texels = static_cast<float>(options.softness_texels);
+  return p;
+}
+
 void Translucency::run(const TranslucencyFrame& frame) const {
   const Images images = check_images(frame, state_->description);
-  make_light_params(frame.lights);  // what is wrong with them, before anything is done
+  make_light_params(frame.lights);  // throws if one is wrong, before anything is done
   with_device_errors([&] {
     const cl::Context context(state_->device.context(), true);
     const cl::CommandQueue queue = cache_of(state_->device).queue(state_->device);
     const ImageBuffers memory(context, frame.width, frame.height, images);
     check_outputs(memory, images, {{lit, light}, {result, beauty}});
     const BoundLights lights(context, queue, state_->program, frame.lights);
+    const params::TranslucencyImages layouts = {
+        memory.layout(light),    memory.layout(albedo), memory.layout(position),  memory.layout(normal),
+        memory.layout(material), memory.layout(mask),   memory.layout(thickness), memory.layout(beauty),
+        memory.layout(lit),      memory.layout(result)};
+    params::TranslucencyParams params = state_->params_of(frame);
+    params.copies_light = memory.same_place(lit, light) ? 0 : 1;
+    params.copies_beauty = memory.same_place(result, beauty) ? 0 : 1;
     const auto buffer = [&](Name name) { return memory.buffer(memory.has(name) ? name : light); };
-    const TranslucencyOptions& options = state_->options;
-    run_per_pixel(queue, state_->program, "transmit", frame.width, frame.height, frame.width, buffer(light),
-                  memory.layout(light), buffer(albedo), memory.layout(albedo), buffer(position),
-                  memory.layout(position), buffer(normal), memory.layout(normal), buffer(material),
-                  memory.layout(material), buffer(mask), memory.layout(mask), buffer(thickness),
-                  memory.layout(thickness), buffer(beauty), memory.layout(beauty), buffer(lit), memory.layout(lit),
-                  buffer(result), memory.layout(result), memory.same_place(lit, light) ? 0 : 1,
-                  memory.same_place(result, beauty) ? 0 : 1, lights.lights(), lights.count(), lights.maps(),
-                  state_->slabs, state_->tables, static_cast<float>(frame.mm_per_unit),
-                  static_cast<float>(options.thickness_scale), static_cast<float>(options.shrink_units),
-                  static_cast<float>(options.softness_texels), frame.lit ? 1 : 0, frame.result ? 1 : 0);
+    run_per_pixel(queue, state_->program, "transmit", frame.width, frame.height, layouts, params, buffer(light),
+                  buffer(albedo), buffer(position), buffer(normal), buffer(material), buffer(mask), buffer(thickness),
+                  buffer(beauty), buffer(lit), buffer(result), lights.lights(), lights.maps(), state_->slabs,
+                  state_->tables);
     queue.finish();
     memory.read_back(queue);
   });

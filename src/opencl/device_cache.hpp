@@ -7,7 +7,7 @@
 
 #include "dermis/device.hpp"
 #include "dermis/profile.hpp"
-#include "dermis/taps.hpp"
+#include "dermis/tap_tables.hpp"
 #include "opencl/opencl.hpp"
 #include "opencl/recent.hpp"
 

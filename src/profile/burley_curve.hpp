@@ -10,11 +10,6 @@ class BurleyCurve final : public SmoothCurve {
  public:
   explicit BurleyCurve(double d) : d_(d) {}
 
-  bool is_same_as(const RadialCurve& other) const override {
-    const auto* its = dynamic_cast<const BurleyCurve*>(&other);
-    return its != nullptr && its->d_ == d_;
-  }
-
   double radial(double r) const override;
   double disc(double r) const override;
   double disc_tail(double r) const override;
@@ -24,6 +19,8 @@ class BurleyCurve final : public SmoothCurve {
   double reach() const override { return 3 * 740 * d_; }
 
  private:
+  std::vector<double> numbers() const override { return {d_}; }
+
   double d_;
 };
 

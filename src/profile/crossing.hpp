@@ -1,4 +1,4 @@
-// Where a monotone function reaches a value.
+// The argument at which a monotone function reaches a value.
 #pragma once
 
 #include <cmath>
@@ -6,7 +6,7 @@
 
 namespace dermis {
 
-/// What is known at a point on the way to the crossing.
+/// A point on the way to the crossing.
 struct Approach {
   bool before;  ///< the crossing lies further out
   double next;  ///< where Newton's method would look next; anything where it has no answer

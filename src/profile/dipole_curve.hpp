@@ -5,8 +5,8 @@
 
 namespace dermis {
 
-/// What leaves a half-space that is lit at a point, scaled to unit integral. With d_r and d_v the distances to the two
-/// sources and s the transport coefficient, it is made of
+/// The light that leaves a half-space that is lit at a point, scaled to unit integral. With d_r and d_v the distances
+/// to the two sources and s the transport coefficient, it is made of
 ///
 ///     flux     z_r (1 + s d_r) e^(-s d_r) / d_r^3 + z_v (1 + s d_v) e^(-s d_v) / d_v^3
 ///     fluence  e^(-s d_r) / d_r - e^(-s d_v) / d_v
@@ -35,12 +35,6 @@ class DipoleCurve final : public SmoothCurve {
 
   explicit DipoleCurve(const Sources& sources);
 
-  bool is_same_as(const RadialCurve& other) const override {
-    const auto* its = dynamic_cast<const DipoleCurve*>(&other);
-    return its != nullptr && its->s_ == s_ && its->z_r_ == z_r_ && its->z_v_ == z_v_ && its->flux_ == flux_ &&
-           its->fluence_ == fluence_;
-  }
-
   double radial(double r) const override;
   double disc(double r) const override;
   double disc_tail(double r) const override;
@@ -49,6 +43,8 @@ class DipoleCurve final : public SmoothCurve {
   double reach() const override { return 740 / s_; }
 
  private:
+  std::vector<double> numbers() const override { return {s_, z_r_, z_v_, flux_, fluence_}; }
+
   double s_;
   double z_r_;
   double z_v_;

@@ -14,7 +14,7 @@ class EdgeTable {
  public:
   EdgeTable(const std::function<double(double)>& tail, double furthest);
 
-  /// Whether x lies in the table: `octaves` octaves up to the furthest x.
+  /// True if x lies in the table, which has `octaves` octaves up to the furthest x.
   bool holds(double x) const { return x > nearest_ && x < furthest_; }
   double operator()(double x) const;
 

@@ -1,4 +1,4 @@
-// What the surface of a medium turns back of the light from inside.
+// Light from inside that the surface of a medium reflects.
 #pragma once
 
 namespace dermis {

@@ -31,6 +31,12 @@ GaussianCurve::GaussianCurve(std::vector<Term> terms) : terms_(std::move(terms))
   for (const Term& term : terms_) widest_ = std::max(widest_, std::sqrt(term.variance));
 }
 
+std::vector<double> GaussianCurve::numbers() const {
+  std::vector<double> all;
+  for (const auto& [weight, variance] : terms_) all.insert(all.end(), {weight, variance});
+  return all;
+}
+
 double GaussianCurve::radial(double r) const {
   return sum_over(terms_, [r](double v) { return std::exp(-r * r / (2 * v)) / (2 * pi * v); });
 }

@@ -24,7 +24,7 @@ void require_share(double share) {
   if (!(share >= 0 && share < 1)) throw Error(ErrorCode::usage, "share", std::to_string(share), "0 <= share < 1");
 }
 
-// What float32 squares of it, and of its reciprocal, can hold with room to spare.
+// float32 can hold the squares of these and of their reciprocals with room to spare.
 constexpr double shortest_mm = 1e-9;
 constexpr double longest_mm = 1e9;
 
@@ -207,7 +207,7 @@ Profile Profile::tabulated(const std::vector<TableRow>& rows) {
 }
 
 bool Profile::operator==(const Profile& other) const {
-  const auto same = [](const auto& a, const auto& b) { return a == b || a->is_same_as(*b); };
+  const auto same = [](const auto& a, const auto& b) { return a == b || *a == *b; };
   return width_follows_albedo_ == other.width_follows_albedo_ &&
          std::equal(curves_.begin(), curves_.end(), other.curves_.begin(), same);
 }

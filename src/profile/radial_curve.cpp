@@ -17,7 +17,7 @@ double next_for_tail(double x, double f, double minus_slope, double target) {
   return x + std::log(f / target) * f / minus_slope;
 }
 
-/// The same over log x, for what grows from 0 like a power of x.
+/// Newton's step over log x, for functions that grow from 0 like a power of x.
 double next_for_growth(double x, double f, double slope, double target) {
   return x * std::exp(std::log(target / f) * f / (x * slope));
 }

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <span>
+#include <typeinfo>
+#include <vector>
 
 namespace dermis {
 
@@ -14,8 +16,10 @@ class RadialCurve {
   RadialCurve& operator=(const RadialCurve&) = delete;
   virtual ~RadialCurve() = default;
 
-  /// Whether the other one is of the same kind and made of the same numbers.
-  virtual bool is_same_as(const RadialCurve& other) const = 0;
+  /// True if both are of one kind and made of the same numbers.
+  bool operator==(const RadialCurve& other) const {
+    return typeid(*this) == typeid(other) && numbers() == other.numbers();
+  }
 
   virtual double radial(double r) const = 0;     ///< R, r >= 0
   virtual double disc(double r) const = 0;       ///< light within r >= 0
@@ -41,6 +45,10 @@ class RadialCurve {
   virtual double reach() const = 0;
   /// Distances > 0, ascending, at which the curve is not smooth.
   virtual std::span<const double> knots() const { return {}; }
+
+ private:
+  /// All numbers that the curve is made of.
+  virtual std::vector<double> numbers() const = 0;
 };
 
 }  // namespace dermis

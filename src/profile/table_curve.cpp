@@ -75,12 +75,13 @@ const TableCurve::Segment& TableCurve::segment_at(double r) const {
   return segments_[static_cast<std::size_t>(knot - knots_.begin())];
 }
 
-bool TableCurve::is_same_as(const RadialCurve& other) const {
-  const auto* its = dynamic_cast<const TableCurve*>(&other);
-  return its != nullptr && std::equal(segments_.begin(), segments_.end(), its->segments_.begin(), its->segments_.end(),
-                                      [](const Segment& a, const Segment& b) {
-                                        return a.from == b.from && a.to == b.to && a.coefficient == b.coefficient;
-                                      });
+std::vector<double> TableCurve::numbers() const {
+  std::vector<double> all;
+  for (const Segment& segment : segments_) {
+    all.insert(all.end(), {segment.from, segment.to});
+    all.insert(all.end(), segment.coefficient.begin(), segment.coefficient.end());
+  }
+  return all;
 }
 
 double TableCurve::radial(double r) const { return r > reach() ? 0 : std::max(0.0, segment_at(r).density(r)); }
@@ -142,7 +143,7 @@ double TableCurve::spectrum(double omega) const {
   double sum = 0;
   for (const Segment& segment : segments_) {
     const double length = segment.to - segment.from;
-    // What J0 adds up to over a segment of so many turns is less than 3e-8 of the segment's light.
+    // Over a segment of so many turns J0 adds up to less than 3e-8 of the segment's light.
     if (length * frequency > 1e5) continue;
     const auto value = [&](double r) { return r * segment.density(r) * j0(frequency * r); };
     if (length * frequency < 0.5) {

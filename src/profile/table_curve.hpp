@@ -18,8 +18,6 @@ class TableCurve final : public RadialCurve {
   /// At least two radii, ascending, and as many values >= 0, not all of them 0.
   TableCurve(std::span<const double> radii, std::span<const double> values);
 
-  bool is_same_as(const RadialCurve& other) const override;
-
   double radial(double r) const override;
   double disc(double r) const override;
   double disc_tail(double r) const override;
@@ -31,9 +29,11 @@ class TableCurve final : public RadialCurve {
   std::span<const double> knots() const override { return knots_; }
 
  private:
+  std::vector<double> numbers() const override;
+
   static constexpr int nodes = 8;
 
-  /// What to multiply 1 / sqrt(r^2 - x^2) with at the nodes of a segment.
+  /// Factors of 1 / sqrt(r^2 - x^2) at the nodes of a segment.
   using Weights = std::array<double, nodes>;
 
   struct Segment {
@@ -49,7 +49,7 @@ class TableCurve final : public RadialCurve {
     double light(double near, double far) const;
     double light_beyond(double r) const { return beyond + light(r, to); }
     void place_nodes();
-    /// Whether 1 / sqrt(r^2 - x^2) is smooth enough on the segment for the nodes: x is five half-lengths from the
+    /// True if 1 / sqrt(r^2 - x^2) is smooth enough on the segment for the nodes: x is five half-lengths from the
     /// middle.
     bool is_far_from(double x) const { return from - x >= 2 * (to - from); }
   };

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "dermis/plan.hpp"
-#include "dermis/taps.hpp"
+#include "dermis/tap_tables.hpp"
 #include "opencl/params.hpp"
 
 namespace dermis {

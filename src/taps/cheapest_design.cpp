@@ -14,7 +14,7 @@ constexpr std::array counts{5, 7, 9, 11, 13, 17, 21, 25, 33, 41, 49, 65};
 
 int reads(const TapsDesign& design) { return (1 + design.rank) * design.count; }
 
-/// The fewest taps of a rank that do; more taps are not worse.
+/// The fewest taps of a rank that meet the tolerance, by bisection: more taps are not worse.
 std::optional<TapsDesign> cheapest_of_rank(const Profile& profile, int rank, double tolerance, double pixel_mm) {
   const auto design = [&](int count) { return TapsDesign{.rank = rank, .count = count}; };
   const auto does_not_do = [&](int count) {
@@ -31,7 +31,7 @@ std::optional<TapsDesign> cheapest_design(const Profile& profile, double toleran
   std::optional<TapsDesign> cheapest;
   for (int rank = 1; rank <= 3; ++rank) {
     const auto design = cheapest_of_rank(profile, rank, tolerance, pixel_mm);
-    // Of equal cost the higher rank, which is better where both will do.
+    // At equal cost the higher rank is better.
     if (design && (!cheapest || reads(*design) <= reads(*cheapest))) cheapest = design;
   }
   return cheapest;

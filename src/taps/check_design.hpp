@@ -1,4 +1,4 @@
-// What a design may ask for.
+// The ranges of a design.
 #pragma once
 
 #include "dermis/taps.hpp"

@@ -15,7 +15,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// How much of the light of the widest channel lies within the radius. More terms are worth more of it.
+/// The share of the widest channel's light that lies within the radius. More terms are worth more of it.
 double share_within_radius(const TapsDesign& design) {
   return design.rank == 1 ? 0.999 : design.rank == 2 ? 0.9999 : 0.99999;
 }
@@ -27,9 +27,9 @@ std::shared_ptr<const PowerGrid> grid_of(int period_px) {
   return grid;
 }
 
-/// What is farther is compared on larger pixels: the period would be too long.
+/// Kernels that reach farther are compared on larger pixels, as the period would be too long.
 constexpr int farthest_px = 4000;
-constexpr int least_reach_px = 127;  // makes the period that of the images
+constexpr int least_reach_px = 127;  // the period is then at least that of the images
 
 /// A period that keeps products of two rows of taps apart.
 int period_for(int last_px) {

@@ -1,4 +1,4 @@
-// A design carried out: its model once, its taps for any size of pixel.
+// A design carried out: its model is made once, its taps for any size of pixel.
 #pragma once
 
 #include <array>
@@ -23,17 +23,17 @@ class DesignedTaps {
   /// The design is in range.
   DesignedTaps(const Profile& profile, const TapsDesign& design);
 
-  /// `near_px` are offsets to start the search from, or to keep, unless it is everywhere.
+  /// Taps for this size of pixel. `near_px`: offsets to start the search from, or to keep, unless it is everywhere.
   SizedTaps at(double pixel_mm, Fetch fetch, Search search = Search::everywhere,
                const std::vector<double>& near_px = {}) const;
 
   /// The error to expect of taps that were placed for this size, over natural images.
   double predicted_rel_l2(const PlacedTaps& placed, double pixel_mm) const;
 
-  /// The same of the model itself, as if each pixel had a tap and the kernel no end.
+  /// The error to expect of the model itself, as if each pixel had a tap and the kernel no end.
   double model_rel_l2(double pixel_mm) const;
 
-  /// The same model with other taps.
+  /// This design with another number of taps.
   DesignedTaps with_count(int count) const;
 
   int count() const { return design_.count; }

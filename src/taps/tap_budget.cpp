@@ -5,21 +5,24 @@
 #include <cmath>
 #include <utility>
 
+#include "dermis/tap_tables.hpp"
+
 namespace dermis {
 
 namespace {
 
-/// Levels in a row that have the same count: that which the widest of them needs. Errors grow by a tenth or two from
-/// the first to the last, and to predict the error of every level would take as long as all fits.
+/// So many levels in a row have one count, which is the one that the widest of them needs. Errors grow by a tenth or
+/// two from the first to the last, and to predict the error of every level would take as long as all fits.
 constexpr int group = 4;
 
-/// Offsets for one radius as a start for another.
+/// Offsets for one radius, as a start for a radius that is `ratio` times as large.
 std::vector<double> scaled(std::vector<double> offsets_px, double ratio) {
   for (double& offset_px : offsets_px) offset_px *= ratio;
   return offsets_px;
 }
 
-/// Many taps are where they were, but for the scale; a search for each level would take a second.
+/// Where there are many taps, those of a level are those of the level before, scaled: a search for each would take a
+/// second.
 bool is_searched_at_every_level(int rank, std::size_t pairs) {
   constexpr std::size_t most_unknowns = 24;
   return static_cast<std::size_t>(rank) * pairs <= most_unknowns;
@@ -57,7 +60,7 @@ SizedTaps TapBudget::at(int level) {
   const int place = level % group;
   if (place == 0) {
     ahead_.reset();
-    if (!at_last_count()) ahead_ = good_enough(level + group - 1);
+    if (!has_highest_count()) ahead_ = good_enough(level + group - 1);
   }
   if (place == group - 1 && ahead_) return *std::exchange(ahead_, std::nullopt);
   return fitted(level, place == 0);
@@ -67,24 +70,24 @@ SizedTaps TapBudget::good_enough(int level) {
   const double pixel_mm = designed().radius_mm() / middle_radius_px(level);
   SizedTaps taps = fitted(level, true);
   double enough = design_.tolerance;
-  for (bool has_model = false; !at_last_count(); taps = fitted(level, true)) {
+  for (bool has_model = false; !has_highest_count(); taps = fitted(level, true)) {
     const double error = designed().predicted_rel_l2(taps.placed, pixel_mm);
     if (error > enough && !has_model) {
       enough = worthwhile_rel_l2(designed(), enough, pixel_mm);
       has_model = true;
     }
     if (error <= enough) break;
-    ++count_;
+    ++present_;
   }
   return taps;
 }
 
-SizedTaps TapBudget::fitted(int level, bool look) {
-  const DesignedTaps& designed = by_count_[count_];
+SizedTaps TapBudget::fitted(int level, bool searches) {
+  const DesignedTaps& designed = by_count_[present_];
   const auto pairs = static_cast<std::size_t>(designed.count() / 2);
   const double radius_px = middle_radius_px(level);
-  look = look || is_searched_at_every_level(design_.rank, pairs);
-  const Search search = near_px_.size() != pairs ? Search::everywhere : look ? Search::nearby : Search::nowhere;
+  searches = searches || is_searched_at_every_level(design_.rank, pairs);
+  const Search search = near_px_.size() != pairs ? Search::everywhere : searches ? Search::nearby : Search::nowhere;
   SizedTaps taps = designed.at(designed.radius_mm() / radius_px, Fetch::integer, search,
                                scaled(near_px_, radius_px / near_radius_px_));
   near_px_ = taps.placed.offsets_px;

@@ -1,4 +1,4 @@
-// Taps for one size of pixel, as callers see them.
+// Taps for one size of pixel, as callers see them: make_tap_set.
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -6,14 +6,14 @@
 
 #include "taps/check_design.hpp"
 #include "taps/designed_taps.hpp"
-#include "taps/placement/quanta.hpp"
+#include "taps/tables/quanta.hpp"
 #include "taps/tap_budget.hpp"
 
 namespace dermis {
 
 namespace {
 
-/// The whole row of one term and channel, from one side of it. `sum` is what the row adds up to.
+/// The whole row of one term and channel, from one side of it. The row adds up to `sum` times `scale`.
 std::vector<double> quantised_row(const Eigen::VectorXd& side, double sum, double scale) {
   const auto pairs = static_cast<int>(side.size()) - 1;
   std::vector<double> row(2 * pairs + 1);
@@ -31,7 +31,7 @@ struct PredictedTaps {
   double rel_l2;
 };
 
-/// Of the counts to choose from, the first that is good enough, else the best.
+/// Taps of the first count that is good enough, else of the best one.
 PredictedTaps fewest_taps(const DesignedTaps& designed, const TapsDesign& design, double pixel_mm, Fetch fetch) {
   std::optional<PredictedTaps> best;
   const double enough = design.tolerance > 0 ? worthwhile_rel_l2(designed, design.tolerance, pixel_mm) : 0;

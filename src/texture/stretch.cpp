@@ -1,4 +1,4 @@
-// How far the surface under each texel reaches, from where its points are.
+// The length of surface under each texel, from the positions of its points.
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -39,6 +39,11 @@ std::array<CallerImage, texture_image_count> check_texture(const TextureFrame& f
 TextureBuffers::TextureBuffers(const cl::Context& context, const TextureFrame& frame,
                                const std::array<CallerImage, texture_image_count>& images)
     : ImageBuffers(context, frame.width, frame.height, images) {
+  const auto layout_of = [&](TextureImage image) { return layout(static_cast<std::size_t>(image)); };
+  layouts_ = {layout_of(TextureImage::light),     layout_of(TextureImage::albedo),
+              layout_of(TextureImage::mask),      layout_of(TextureImage::stretch_u),
+              layout_of(TextureImage::stretch_v), layout_of(TextureImage::scattered),
+              layout_of(TextureImage::result)};
   for (std::size_t output = 0; output < images.size(); ++output) {
     if (!images[output].is_output) continue;
     for (std::size_t other = 0; other < output; ++other) {
@@ -53,10 +58,6 @@ TextureBuffers::TextureBuffers(const cl::Context& context, const TextureFrame& f
 
 const cl::Buffer& TextureBuffers::buffer(TextureImage image) const {
   return ImageBuffers::buffer(static_cast<std::size_t>(has(image) ? image : TextureImage::light));
-}
-
-const params::ImageParams& TextureBuffers::layout(TextureImage image) const {
-  return ImageBuffers::layout(static_cast<std::size_t>(image));
 }
 
 }  // namespace dermis

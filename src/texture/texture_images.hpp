@@ -17,7 +17,7 @@ inline constexpr std::size_t texture_image_count = 7;
 std::array<CallerImage, texture_image_count> check_texture(const TextureFrame& frame,
                                                            const TextureDescription& description);
 
-/// Their buffers.
+/// The buffers of a texture's images.
 class TextureBuffers : public ImageBuffers {
  public:
   /// Throws Error(usage) if an output lies over an input, but not in its place.
@@ -28,7 +28,11 @@ class TextureBuffers : public ImageBuffers {
 
   /// The buffer of an image; of the light if the frame has no such image, so that kernels always get a valid argument.
   const cl::Buffer& buffer(TextureImage image) const;
-  const params::ImageParams& layout(TextureImage image) const;
+  /// The layouts of all images.
+  const params::TextureLayouts& layouts() const { return layouts_; }
+
+ private:
+  params::TextureLayouts layouts_;
 };
 
 }  // namespace dermis

@@ -1,89 +1,93 @@
-// The steps over one texture.
+// One run over a texture: the steps and the planes that all methods share.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
-#include "opencl/memory_pool.hpp"
 #include "opencl/opencl.hpp"
 #include "texture/texture_images.hpp"
-#include "texture/texture_tables.hpp"
 
 namespace dermis {
 
-/// What a plan asks of the memory for a texture of some size.
+/// The size of a texture, and what follows from it for planes in device memory.
 struct TextureSizes {
   int width, height;
-  bool recursive;
 
-  int stride() const;  ///< of planes, texels
+  int stride() const;  ///< texels from one row of a plane to the next
   int blocks_x() const;
   int blocks_y() const;
-  std::size_t texels() const;  ///< of a plane
+  std::size_t texels() const;  ///< in a plane
   std::size_t blocks() const;
   bool operator==(const TextureSizes&) const = default;
 };
 
-/// Buffers for one run at a time.
-struct TextureMemory {
-  TextureSizes sizes;
-  cl::Buffer light;                             ///< in
-  cl::Buffer between;                           ///< after the pass along u
-  cl::Buffer last;                              ///< of the Gaussians: the last level
-  cl::Buffer sum;                               ///< out; of recursion in place of the light
-  cl::Buffer objects;                           ///< 1 per texel of an object
-  cl::Buffer runs[4];                           ///< of the Gaussians: texels before and after along u, then along v
-  cl::Buffer light_lit, between_lit, last_lit;  ///< per channel and block: see texture_prepare.cl
+/// The buffers that texture_prepare fills: see texture_prepare.cl.
+struct TexturePlanes {
+  cl::Buffer light;
+  cl::Buffer objects;
+  cl::Buffer lit;  ///< parts of three channels, the first one for the light
   cl::Buffer finest;
   cl::Buffer counters;
 
-  TextureMemory(const cl::Context& context, const TextureSizes& wanted);
+  TexturePlanes(const cl::Context& context, const TextureSizes& sizes, int light_floats_per_texel, int lit_parts);
 };
 
-struct TexturePlan::State {
-  Device device;
-  TextureDescription description;
-  TextureOptions options;
-  GaussianChain chain;        ///< of the method gaussians
-  Recursion recursion;        ///< of the method recursive
-  cl::Program image_program;  ///< the caller's images in and out
-  cl::Program pass_program;
-  int vector_width = 1;
-  mutable MemoryPool<TextureMemory> memories;
+inline cl::Buffer device_buffer(const cl::Context& context, std::size_t bytes) {
+  return {context, CL_MEM_READ_WRITE, bytes};
+}
 
-  explicit State(const Device& its_device) : device(its_device) {}
+inline int parts_of(int whole, int part) { return (whole + part - 1) / part; }
 
-  bool is_recursive() const { return options.method == TextureMethod::recursive; }
-};
-
-/// One texture on one queue. Each call puts one step on the queue, to start after the one before it; none blocks but
-/// add_to.
+/// One texture on one queue. Each call puts work on the queue, to start after the work before it; none blocks but
+/// `wait`.
 class TextureRun {
  public:
-  TextureRun(const TexturePlan::State& plan, const TextureFrame& frame, const TextureBuffers& images,
-             TextureMemory& memory, cl::CommandQueue queue);
+  enum class Step { prepare, scatter, finish };
 
-  void prepare();
-  void scatter();
-  void finish();
+  /// `image_program` has texture_prepare.cl and texture_finish.cl. The images outlive the run.
+  TextureRun(const cl::CommandQueue& queue, const cl::Program& image_program, const TextureFrame& frame,
+             const TextureBuffers& images, double albedo_mix);
 
-  /// Adds what the run counted, and the times.
-  void add_to(TextureStats& stats) const;
+  const cl::Context& context() const { return context_; }
+  const cl::CommandQueue& queue() const { return queue_; }
+  const TextureSizes& sizes() const { return sizes_; }
+  const params::TextureParams& params() const { return params_; }
+
+  /// mm of all texels, or 0 if the texture has stretches.
+  double mm_per_texel() const;
+
+  /// A pass along u or v, and the buffer of its stretches. Recursion sets its lines_per_item.
+  params::TexturePass pass(bool along_v) const;
+  const cl::Buffer& stretch(bool along_v) const;
+
+  /// Fills the planes from the caller's images.
+  void prepare(const TexturePlanes& planes);
+
+  /// Launches a kernel that belongs to the step, with a work-item for each column and row, or for each block.
+  void launch(Step step, cl::Kernel& kernel, int columns, int rows = 1);
+  void launch_blocks(Step step, cl::Kernel& kernel) { launch(step, kernel, params_.blocks_x, params_.blocks_y); }
+
+  /// Adds to the number of parts that passes consist of.
+  void count_parts(std::size_t parts) { parts_ += static_cast<std::int64_t>(parts); }
+
+  /// Writes the outputs from the scattered light.
+  void finish(const cl::Buffer& scattered);
+
+  /// Waits for the outputs, and returns what the run counted and all times but the total.
+  TextureStats wait(const TexturePlanes& planes) const;
 
  private:
-  cl::Event launch(cl::Kernel& kernel, int columns, int rows = 1);
-  cl::Event launch_blocks(cl::Kernel& kernel);
-  void blur();
-  void recurse();
+  double milliseconds_of(Step step) const { return milliseconds(events_[static_cast<std::size_t>(step)]); }
 
-  const TexturePlan::State& plan_;
-  const TextureBuffers& images_;
-  TextureMemory& memory_;
   cl::CommandQueue queue_;
   cl::Context context_;
+  const cl::Program& image_program_;
+  const TextureBuffers& images_;
+  TextureSizes sizes_;
   params::TextureParams params_;
-  std::vector<cl::Event> prepare_, scatter_, finish_;
+  std::array<std::vector<cl::Event>, 3> events_;  ///< by Step
   std::int64_t parts_ = 0;
 };
 

@@ -7,10 +7,10 @@
 #include <limits>
 
 #include "dermis/exr.hpp"
-#include "exr/temporary_folder.hpp"
 #include "support/catch.hpp"
 #include "support/failure.hpp"
 #include "support/random.hpp"
+#include "support/temporary_folder.hpp"
 
 using dermis::Camera;
 using dermis::ErrorCode;

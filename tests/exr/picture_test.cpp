@@ -11,10 +11,10 @@
 #include "exr/header.hpp"
 #include "exr/raw_exr.hpp"
 #include "exr/stored_channels.hpp"
-#include "exr/temporary_folder.hpp"
 #include "support/catch.hpp"
 #include "support/failure.hpp"
 #include "support/random.hpp"
+#include "support/temporary_folder.hpp"
 
 using dermis::ErrorCode;
 using dermis::Format;

@@ -2,10 +2,10 @@
 #include <cstring>
 
 #include "dermis/exr.hpp"
-#include "exr/temporary_folder.hpp"
 #include "support/catch.hpp"
 #include "support/failure.hpp"
 #include "support/random.hpp"
+#include "support/temporary_folder.hpp"
 
 using dermis::ErrorCode;
 using dermis::Format;

@@ -8,9 +8,9 @@
 
 #include "program/made_picture.hpp"
 #include "program/run_program.hpp"
-#include "program/temporary_folder.hpp"
 #include "support/catch.hpp"
 #include "support/random.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace fs = std::filesystem;
 using Words = std::vector<std::string>;

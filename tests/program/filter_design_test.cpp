@@ -17,8 +17,8 @@
 #include "dermis/taps.hpp"
 #include "program/made_picture.hpp"
 #include "program/run_program.hpp"
-#include "program/temporary_folder.hpp"
 #include "support/catch.hpp"
+#include "support/temporary_folder.hpp"
 
 using dermis::TapsDesign;
 using dermis::exr::Picture;

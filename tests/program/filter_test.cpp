@@ -16,9 +16,9 @@
 #include "dermis/plan.hpp"
 #include "program/made_picture.hpp"
 #include "program/run_program.hpp"
-#include "program/temporary_folder.hpp"
 #include "support/catch.hpp"
 #include "support/random.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace fs = std::filesystem;
 using dermis::exr::Picture;

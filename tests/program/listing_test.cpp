@@ -13,8 +13,8 @@
 #include "dermis/version.hpp"
 #include "program/made_picture.hpp"
 #include "program/run_program.hpp"
-#include "program/temporary_folder.hpp"
 #include "support/catch.hpp"
+#include "support/temporary_folder.hpp"
 
 using dermis::exr::Picture;
 using nlohmann::json;

@@ -8,8 +8,8 @@
 
 #include "program/made_picture.hpp"
 #include "program/run_program.hpp"
-#include "program/temporary_folder.hpp"
 #include "support/catch.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace {
 

@@ -7,8 +7,8 @@
 #include <fstream>
 #include <iterator>
 
-#include "program/temporary_folder.hpp"
 #include "support/catch.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace {
 

@@ -13,9 +13,9 @@
 #include <vector>
 
 #include "program/run_program.hpp"
-#include "program/temporary_folder.hpp"
 #include "support/catch.hpp"
 #include "support/random.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace fs = std::filesystem;
 using nlohmann::json;

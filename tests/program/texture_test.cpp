@@ -7,8 +7,8 @@
 #include "dermis/exr.hpp"
 #include "program/made_picture.hpp"
 #include "program/run_program.hpp"
-#include "program/temporary_folder.hpp"
 #include "support/catch.hpp"
+#include "support/temporary_folder.hpp"
 
 using dermis::exr::Picture;
 using Words = std::vector<std::string>;

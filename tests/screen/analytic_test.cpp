@@ -4,7 +4,7 @@
 #include <numeric>
 
 #include "dermis/plan.hpp"
-#include "dermis/taps.hpp"
+#include "dermis/tap_tables.hpp"
 #include "support/catch.hpp"
 #include "support/random_frame.hpp"
 

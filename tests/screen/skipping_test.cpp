@@ -3,6 +3,7 @@
 #include <cstring>
 
 #include "dermis/plan.hpp"
+#include "dermis/tap_tables.hpp"
 #include "support/catch.hpp"
 #include "support/random_frame.hpp"
 

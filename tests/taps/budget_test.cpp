@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "dermis/plan.hpp"
-#include "dermis/taps.hpp"
+#include "dermis/tap_tables.hpp"
 #include "inputs/natural_picture.hpp"
 #include "support/catch.hpp"
 #include "support/natural_pictures.hpp"

@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "dermis/plan.hpp"
+#include "dermis/tap_tables.hpp"
 #include "inputs/natural_picture.hpp"
 #include "support/catch.hpp"
 #include "support/random.hpp"

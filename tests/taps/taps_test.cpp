@@ -1,4 +1,4 @@
-#include "dermis/taps.hpp"
+#include "dermis/tap_tables.hpp"
 
 #include <cmath>
 #include <limits>

@@ -1,6 +1,9 @@
 #include "arguments/picture_arguments.hpp"
 
+#include <fmt/format.h>
+
 #include "arguments/number_argument.hpp"
+#include "dermis/exr.hpp"
 
 namespace dermis::program {
 
@@ -11,9 +14,9 @@ void add_picture_arguments(CLI::App& app, PictureArguments& arguments) {
 
 void add_role_arguments(CLI::App& app, PictureArguments& arguments) {
   app.add_option("--role", arguments.roles,
-                 "take light, albedo, depth, position, normal, material, mask, matte, specular, beauty, thickness, "
-                 "stretch_u or "
-                 "stretch_v from these channels (1 or 3 names with commas, or one prefix; + adds); repeatable")
+                 fmt::format("take a role ({}) from these channels (1 or 3 names with commas, or one prefix; + adds); "
+                             "repeatable",
+                             exr::role_names()))
       ->allow_extra_args(false)
       ->type_name("ROLE=CHANNELS");
   app.add_option("--layer", arguments.layer, "the view layer, if there are several; else the first")->type_name("NAME");

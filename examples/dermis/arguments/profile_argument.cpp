@@ -1,5 +1,6 @@
 #include "arguments/profile_argument.hpp"
 
+#include <array>
 #include <filesystem>
 #include <optional>
 #include <vector>
@@ -12,12 +13,6 @@
 namespace dermis::program {
 namespace {
 
-constexpr std::string_view burley_prefix = "burley:";
-constexpr std::string_view gaussians_prefix = "gaussians:";
-constexpr std::string_view artist_prefix = "artist:";
-constexpr std::string_view dipole_prefix = "dipole:";
-constexpr std::string_view better_dipole_prefix = "better-dipole:";
-constexpr std::string_view table_prefix = "table:";
 constexpr std::string_view albedo_prefix = "albedo=";
 constexpr std::string_view weight_prefix = "w=";
 constexpr std::string_view eta_prefix = "eta=";
@@ -58,85 +53,142 @@ bool all_0_to_1(const Rgb& rgb) {
   return true;
 }
 
-Profile parse_burley(std::string_view argument, std::string_view text) {
-  const auto parts = split(text.substr(burley_prefix.size()), ',');
+/// PROFILE on the command line, cut after the prefix of its kind.
+struct Spelling {
+  std::string_view argument;
+  std::string_view text;    ///< all of it
+  std::string_view prefix;  ///< with its colon
+
+  std::string_view rest() const { return text.substr(prefix.size()); }
+  std::string file() const { return std::string(rest()); }
+
+  [[noreturn]] void malformed(std::string_view wanted) const { throw Error(ErrorCode::usage, argument, text, wanted); }
+};
+
+Profile parse_burley(const Spelling& spelling) {
+  const auto parts = split(spelling.rest(), ',');
   const auto lengths = parse_rgb(parts[0]);
   if (!lengths || !all_above_zero(*lengths))
-    throw Error(ErrorCode::usage, argument, text, "burley: and three lengths in mm, each > 0, as burley:1.5/0.7/0.4");
+    spelling.malformed("burley: and three lengths in mm, each > 0, as burley:1.5/0.7/0.4");
   if (parts.size() == 1) return Profile::burley(*lengths);
   const bool path = parts[1] == "mfp";
   if ((parts[1] != "cycles" && !path) || parts.size() > 3 || (path && parts.size() < 3))
-    throw Error(ErrorCode::usage, argument, text,
-                "burley:R/G/B, burley:R/G/B,cycles, burley:R/G/B,cycles,albedo=R/G/B or burley:R/G/B,mfp,albedo=R/G/B");
+    spelling.malformed(
+        "burley:R/G/B, burley:R/G/B,cycles, burley:R/G/B,cycles,albedo=R/G/B or burley:R/G/B,mfp,albedo=R/G/B");
   if (parts.size() == 2) return Profile::burley_cycles(*lengths);
   const bool named = parts[2].starts_with(albedo_prefix);
   const auto albedo = named ? parse_rgb(parts[2].substr(albedo_prefix.size())) : std::nullopt;
   if (!albedo || !all_0_to_1(*albedo))
-    throw Error(ErrorCode::usage, argument, text, "albedo= and three numbers from 0 to 1, as albedo=0.8/0.6/0.5");
+    spelling.malformed("albedo= and three numbers from 0 to 1, as albedo=0.8/0.6/0.5");
   return path ? Profile::burley_mfp(*lengths, *albedo) : Profile::burley_cycles(*lengths, *albedo);
 }
 
-Profile parse_artist(std::string_view argument, std::string_view text) {
-  const auto parts = split(text.substr(artist_prefix.size()), ',');
+Profile parse_artist(const Spelling& spelling) {
+  const auto parts = split(spelling.rest(), ',');
   const auto near_mm = parse_rgb(parts[0]);
   const auto far_mm = parts.size() == 3 ? parse_rgb(parts[1]) : std::nullopt;
   const auto weight = parts.size() == 3 ? parse_named(parts[2], weight_prefix) : std::nullopt;
   if (!near_mm || !far_mm || !weight || !all_above_zero(*near_mm) || !all_above_zero(*far_mm) || *weight < 0 ||
       *weight > 1)
-    throw Error(ErrorCode::usage, argument, text,
-                "artist:, twice three lengths in mm, each > 0, and a weight from 0 to 1, as "
-                "artist:0.25/0.08/0.02,1/0.3/0.05,w=0.6");
+    spelling.malformed(
+        "artist:, twice three lengths in mm, each > 0, and a weight from 0 to 1, as "
+        "artist:0.25/0.08/0.02,1/0.3/0.05,w=0.6");
   return Profile::artist(*near_mm, *far_mm, *weight);
 }
 
-using MakeDipole = Profile (*)(const Rgb&, const Rgb&, double);
-
-Profile parse_dipole(std::string_view argument, std::string_view text, std::string_view prefix, MakeDipole make) {
-  const auto parts = split(text.substr(prefix.size()), ',');
+template <Profile (*make)(const Rgb&, const Rgb&, double)>
+Profile parse_dipole(const Spelling& spelling) {
+  const auto parts = split(spelling.rest(), ',');
   const auto scattering = parse_rgb(parts[0]);
   const auto absorption = parts.size() > 1 ? parse_rgb(parts[1]) : std::nullopt;
-  if (!scattering || !absorption || !all_above_zero(*scattering) || !all_above_zero(*absorption) || parts.size() > 3)
-    throw Error(ErrorCode::usage, argument, text,
-                std::string(prefix) + " and twice three coefficients in 1/mm, each > 0, as " + std::string(prefix) +
-                    "0.74/0.88/1.01,0.032/0.17/0.48,eta=1.3");
+  if (!scattering || !absorption || !all_above_zero(*scattering) || !all_above_zero(*absorption) || parts.size() > 3) {
+    const std::string prefix(spelling.prefix);
+    spelling.malformed(prefix + " and twice three coefficients in 1/mm, each > 0, as " + prefix +
+                       "0.74/0.88/1.01,0.032/0.17/0.48,eta=1.3");
+  }
   if (parts.size() == 2) return make(*scattering, *absorption, 1.3);
   const auto eta = parse_named(parts[2], eta_prefix);
-  if (!eta || *eta < 1 || *eta > 2.5)
-    throw Error(ErrorCode::usage, argument, text, "eta= and a refractive index from 1 to 2.5, as eta=1.3");
+  if (!eta || *eta < 1 || *eta > 2.5) spelling.malformed("eta= and a refractive index from 1 to 2.5, as eta=1.3");
   return make(*scattering, *absorption, *eta);
+}
+
+Profile parse_gaussians(const Spelling& spelling) {
+  return Profile::gaussians(read_gaussians(spelling.argument, spelling.file()));
+}
+
+Profile parse_table(const Spelling& spelling) {
+  return Profile::tabulated(read_table(spelling.argument, spelling.file()));
+}
+
+/// One kind of profile.
+struct Kind {
+  std::string_view prefix;
+  Profile (*parse)(const Spelling&);
+  bool is_file;
+  std::string_view spellings;  ///< for errors
+  std::string_view help;       ///< lines of the grammar
+};
+
+constexpr std::array kinds = {
+    Kind{"burley:", parse_burley, false, "burley:R/G/B[,cycles[,albedo=R/G/B]], burley:R/G/B,mfp,albedo=R/G/B",
+         "  burley:DR/DG/DB            Burley's diffusion, d = 1/s in mm per channel\n"
+         "  burley:RR/RG/RB,cycles     Cycles' subsurface radius in mm, with the albedo of each pixel\n"
+         "  burley:RR/RG/RB,cycles,albedo=AR/AG/AB\n"
+         "                             the same with a constant albedo\n"
+         "  burley:LR/LG/LB,mfp,albedo=AR/AG/AB\n"
+         "                             mean free path in mm and albedo\n"},
+    Kind{"gaussians:", parse_gaussians, true, "gaussians:FILE.json",
+         "  gaussians:FILE.json        {\"terms\": [{\"variance_mm2\": v, \"weight\": [r, g, b]}, ...]}\n"},
+    Kind{
+        "artist:", parse_artist, false, "artist:R/G/B,R/G/B,w=W",
+        "  artist:NR/NG/NB,FR/FG/FB,w=W\n"
+        "                             a near and a far Gaussian, standard deviations in mm, W of the light in the near "
+        "one\n"},
+    Kind{"dipole:", parse_dipole<Profile::dipole>, false, "dipole:R/G/B,R/G/B[,eta=E]",
+         "  dipole:SR/SG/SB,AR/AG/AB[,eta=E]\n"
+         "                             a medium: reduced scattering and absorption in 1/mm, refractive index (1.3)\n"},
+    Kind{"better-dipole:", parse_dipole<Profile::better_dipole>, false, "better-dipole:R/G/B,R/G/B[,eta=E]",
+         "  better-dipole:SR/SG/SB,AR/AG/AB[,eta=E]\n"
+         "                             the same by d'Eon's better dipole\n"},
+    Kind{"table:", parse_table, true, "table:FILE.csv",
+         "  table:FILE.csv             rows of r_mm,R,G,B; a header line and # comments may stand in it\n"},
+};
+
+/// The kind that the text begins with; none for a preset.
+const Kind* kind_of(std::string_view text) {
+  for (const Kind& kind : kinds)
+    if (text.starts_with(kind.prefix)) return &kind;
+  return nullptr;
 }
 
 }  // namespace
 
+std::string profile_grammar() {
+  std::string grammar = "PROFILE is one of\n  NAME                       a preset, see `dermis profiles`\n";
+  for (const Kind& kind : kinds) grammar += kind.help;
+  grammar.pop_back();
+  return grammar;
+}
+
 Profile parse_profile(std::string_view argument, std::string_view text) {
-  if (text.starts_with(burley_prefix)) return parse_burley(argument, text);
-  if (text.starts_with(gaussians_prefix))
-    return Profile::gaussians(read_gaussians(argument, std::string(text.substr(gaussians_prefix.size()))));
-  if (text.starts_with(artist_prefix)) return parse_artist(argument, text);
-  if (text.starts_with(dipole_prefix)) return parse_dipole(argument, text, dipole_prefix, Profile::dipole);
-  if (text.starts_with(better_dipole_prefix))
-    return parse_dipole(argument, text, better_dipole_prefix, Profile::better_dipole);
-  if (text.starts_with(table_prefix))
-    return Profile::tabulated(read_table(argument, std::string(text.substr(table_prefix.size()))));
+  if (const Kind* kind = kind_of(text)) return kind->parse({argument, text, kind->prefix});
   std::string names;
   for (const Preset& known : presets()) {
     if (known.name == text) return known.profile;
     names += known.name + ", ";
   }
-  throw Error(ErrorCode::usage, argument, text.empty() ? "nothing" : text,
-              names +
-                  "burley:R/G/B[,cycles[,albedo=R/G/B]], burley:R/G/B,mfp,albedo=R/G/B, gaussians:FILE.json, "
-                  "artist:R/G/B,R/G/B,w=W, dipole:R/G/B,R/G/B[,eta=E], better-dipole:R/G/B,R/G/B[,eta=E] or "
-                  "table:FILE.csv");
+  for (const Kind& kind : kinds) {
+    names += kind.spellings;
+    names += &kind == &kinds.back() ? "" : &kind + 1 == &kinds.back() ? " or " : ", ";
+  }
+  throw Error(ErrorCode::usage, argument, text.empty() ? "nothing" : text, names);
 }
 
 std::string without_folders(std::string_view text) {
-  for (const std::string_view prefix : {gaussians_prefix, table_prefix}) {
-    if (!text.starts_with(prefix)) continue;
-    const std::filesystem::path file(text.substr(prefix.size()));
-    return std::string(prefix) + file.filename().string();
-  }
-  return std::string(text);
+  const Kind* kind = kind_of(text);
+  if (kind == nullptr || !kind->is_file) return std::string(text);
+  const std::filesystem::path file(text.substr(kind->prefix.size()));
+  return std::string(kind->prefix) + file.filename().string();
 }
 
 }  // namespace dermis::program

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "dermis/taps.hpp"
+#include "dermis/tap_tables.hpp"
 
 namespace dermis::program {
 namespace {

@@ -187,8 +187,8 @@ std::string text_of(const Info& info, const std::string& path) {
   text += fmt::format("channels        {}\n", info.picture.channels().size());
   text += fmt::format("layer           {}\n", info.roles.layer.empty() ? "none" : info.roles.layer);
   text += "roles\n";
-  for (const Role role : exr::all_roles)
-    text += fmt::format("  {:<13} {}\n", exr::name_of(role), program::text_of(info.roles[role]));
+  for (const exr::RoleInfo& role : exr::role_table)
+    text += fmt::format("  {:<13} {}\n", role.name, program::text_of(info.roles[role.role]));
   text += fmt::format("camera          {}\n",
                       info.camera ? program::text_of(*info.camera) : "none, " + info.camera_problem);
   if (!info.surfaces.empty()) text += "materials\n";

@@ -174,7 +174,7 @@ Command add_taps(CLI::App& parent) {
                   "draw slices of kernel and profile, singular values, step response and weights; needs gnuplot")
       ->check(file_name_ending({".svg", ".png"}))
       ->type_name("FILE.svg|png");
-  app->footer(std::string(profile_grammar));
+  app->footer(profile_grammar());
   return {app, [arguments] { return run_taps(*arguments); }};
 }
 

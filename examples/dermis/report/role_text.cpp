@@ -48,9 +48,9 @@ std::string text_of(const exr::FoundCamera& found) {
 
 json json_of(const exr::Roles& roles) {
   json result = {{"layer", roles.layer}};
-  for (const exr::Role role : exr::all_roles) {
-    json& entry = result[std::string(exr::name_of(role))];
-    if (roles.has(role)) entry = roles[role];
+  for (const exr::RoleInfo& info : exr::role_table) {
+    json& entry = result[std::string(info.name)];
+    if (roles.has(info.role)) entry = roles[info.role];
   }
   return result;
 }

@@ -7,7 +7,7 @@
 #include "dermis/frame.hpp"
 #include "dermis/oracle/picture.hpp"
 #include "dermis/plan.hpp"
-#include "dermis/taps.hpp"
+#include "dermis/tap_tables.hpp"
 
 namespace dermis::oracle {
 

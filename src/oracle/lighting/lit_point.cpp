@@ -5,7 +5,7 @@
 #include <limits>
 #include <numbers>
 
-#include "oracle/screen/frame_images.hpp"
+#include "oracle/frame/frame_images.hpp"
 
 namespace dermis::oracle {
 

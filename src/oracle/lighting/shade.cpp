@@ -4,11 +4,11 @@
 #include <vector>
 
 #include "dermis/oracle/lighting.hpp"
+#include "oracle/frame/frame_images.hpp"
 #include "oracle/lighting/lit_point.hpp"
 #include "oracle/math/adaptive_integral.hpp"
 #include "oracle/math/gauss_legendre.hpp"
 #include "oracle/math/rounding.hpp"
-#include "oracle/screen/frame_images.hpp"
 
 namespace dermis::oracle {
 

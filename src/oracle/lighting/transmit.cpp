@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "dermis/oracle/lighting.hpp"
+#include "oracle/frame/frame_images.hpp"
 #include "oracle/lighting/lit_point.hpp"
 #include "oracle/math/rounding.hpp"
-#include "oracle/screen/frame_images.hpp"
 
 namespace dermis::oracle {
 

@@ -1,7 +1,7 @@
 /// Reading a RadialTable.
 #pragma once
 
-#include "dermis/taps.hpp"
+#include "dermis/tap_tables.hpp"
 #include "oracle/math/rounding.hpp"
 
 namespace dermis::oracle {

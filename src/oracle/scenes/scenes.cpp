@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "dermis/error.hpp"
+#include "oracle/frame/view.hpp"
 #include "oracle/math/vec3.hpp"
 #include "oracle/scenes/subjects.hpp"
-#include "oracle/screen/view.hpp"
 
 namespace dermis::oracle {
 

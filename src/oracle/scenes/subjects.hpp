@@ -7,8 +7,8 @@
 #include <span>
 
 #include "dermis/oracle/scenes.hpp"
+#include "oracle/frame/view.hpp"
 #include "oracle/math/vec3.hpp"
-#include "oracle/screen/view.hpp"
 
 namespace dermis::oracle {
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "oracle/screen/frame_images.hpp"
+#include "oracle/frame/frame_images.hpp"
 
 namespace dermis::oracle {
 

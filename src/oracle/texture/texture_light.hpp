@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "dermis/oracle/texture.hpp"
-#include "oracle/screen/light.hpp"
+#include "oracle/frame/light.hpp"
 
 namespace dermis::oracle {
 

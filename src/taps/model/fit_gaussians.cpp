@@ -68,7 +68,7 @@ struct Fitted {
   double error;
 };
 
-/// From variances spread evenly, in their logarithm, over the given share of the range.
+/// The fit that starts from variances spread evenly, in their logarithm, over the given range.
 Fitted fit_from(const SpectrumResiduals& residuals, double log_low, double log_high) {
   const int count = residuals.count;
   VectorXd x = VectorXd::Zero(2 * count);

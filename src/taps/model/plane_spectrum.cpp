@@ -11,7 +11,7 @@ using Eigen::MatrixXd;
 
 namespace {
 
-/// How many times finer than a pixel the waves are that models heed, so that they serve smaller pixels too.
+/// Models heed waves that are up to so many times finer than a pixel, so that they serve smaller pixels too.
 constexpr double finest_waves = 6;
 
 double sum_of_pairs(const MatrixXd& weighted) {

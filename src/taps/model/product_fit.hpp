@@ -20,8 +20,8 @@ struct ProductFit {
   };
   std::vector<Product> products;
 
-  /// Where the sum of products must not be negative, if anywhere: the same products on another grid, of which the
-  /// negative part times weight counts as an error too.
+  /// Another grid, on which the sum of products must not be negative: its negative part times `weight` counts as an
+  /// error too. Empty if it may be negative everywhere.
   struct Floor {
     Eigen::MatrixXd weight;
     Eigen::MatrixXd basis;

@@ -12,7 +12,7 @@ double TermFunction::sum() const {
     total += gaussian.weight;
     size += std::abs(gaussian.weight);
   }
-  // What is left of terms that cancel is rounding, and nothing may scale it up.
+  // Terms that cancel leave rounding behind, which nothing may scale up.
   constexpr double rounding = 1e-14;
   return std::abs(total) > rounding * size ? total : 0;
 }
@@ -45,11 +45,11 @@ std::vector<ModelTerm> make_model(const Profile& profile, const TapsDesign& desi
     case Model::guided:
       return fit_guided(profile, design.guide);
     case Model::svd:
-      return decompose(profile, design.rank);
+      return fit_svd(profile, design.rank);
     case Model::gaussians:
       return fit_gaussians(profile, design.rank);
     case Model::optimised:
-      return fit_spectrum(profile, design.rank, design.non_negative);
+      return fit_optimised(profile, design.rank, design.non_negative);
   }
   return {};
 }

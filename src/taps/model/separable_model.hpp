@@ -47,7 +47,7 @@ ModelTerm merged(const std::vector<ModelTerm>& terms);
 // The models that are fitted, each in a file of its name.
 std::vector<ModelTerm> fit_gaussians(const Profile& profile, int count);
 std::vector<ModelTerm> fit_guided(const Profile& profile, double guide);
-std::vector<ModelTerm> fit_spectrum(const Profile& profile, int rank, bool non_negative);
-std::vector<ModelTerm> decompose(const Profile& profile, int rank);
+std::vector<ModelTerm> fit_optimised(const Profile& profile, int rank, bool non_negative);
+std::vector<ModelTerm> fit_svd(const Profile& profile, int rank);
 
 }  // namespace dermis

@@ -14,7 +14,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// A tap between two pixels is so much of each.
+/// A tap between two pixels reads such a share of each.
 struct PixelShare {
   int offset_px;
   double share;
@@ -29,11 +29,11 @@ std::array<PixelShare, 2> pixels_of(double offset_px) {
 /// The moments of a function of frequency, computed when first asked for: few are.
 class Moments {
  public:
-  /// Of values at the coarse frequencies.
+  /// The moments of a function that is given at the coarse frequencies.
   static Moments of_coarse(const PowerGrid& grid, VectorXd at_coarse) {
     return {grid, std::move(at_coarse), VectorXd::Constant(grid.fine.size(), unknown), true};
   }
-  /// Of values at the fine frequencies. `many`: all at once.
+  /// The moments of a function that is given at the fine frequencies. `many`: all are computed at once.
   static Moments of_fine(const PowerGrid& grid, VectorXd at_fine, bool many) {
     VectorXd moments = many ? grid.moments(at_fine) : VectorXd(VectorXd::Constant(grid.fine.size(), unknown));
     return {grid, std::move(at_fine), std::move(moments), false};
@@ -57,8 +57,8 @@ class Moments {
   bool is_coarse_;
 };
 
-/// The weights x of pairs that make x^T matrix x / 2 - right^T x least: those of one term after those of another.
-/// `matrix` has its lower half.
+/// Equations for the weights x of pairs, term after term, that make x^T matrix x / 2 - right^T x least. Only the lower
+/// half of `matrix` is filled.
 struct Equations {
   MatrixXd matrix;
   VectorXd right;
@@ -76,17 +76,17 @@ class QuadraticForm {
     return solve(equations(offsets_px), non_negative, weights);
   }
 
-  /// The same in two steps: one for all terms if they are changed together, else one for each.
+  /// The two steps of it: one set of equations for all terms if they are changed together, else one for each.
   std::vector<Equations> equations(const std::vector<double>& offsets_px) const;
   double solve(const std::vector<Equations>& equations, const std::vector<bool>& non_negative, MatrixXd* weights) const;
-  /// Another offset for one of the pairs.
+  /// Puts another offset of one of the pairs into the equations.
   void move(std::vector<Equations>& equations, const std::vector<double>& offsets_px, std::size_t pair) const;
 
  private:
-  /// What the equations for the weights of the terms from `first` on take from the error at best; puts the weights in
-  /// their columns.
+  /// Solves the equations for the terms from `first` on and puts the weights in their columns; returns the change of
+  /// the error, which is not above 0.
   double change(const Equations& its, int first, const std::vector<bool>& non_negative, MatrixXd* weights) const;
-  /// The rows of a pair, as far as they are about the first so many pairs.
+  /// Fills the rows of a pair, in the columns of the first `others` pairs.
   void fill(std::vector<Equations>& equations, const std::vector<double>& offsets_px, std::size_t pair,
             std::size_t others) const;
   double product(const Moments& moments, double offset_a, double offset_b) const;
@@ -150,9 +150,9 @@ double QuadraticForm::product(const Moments& moments, double offset_a, double of
   return sum;
 }
 
-/// Solves equations for weights of which those marked in `non_negative` are not below 0. What would be below is held
-/// at 0, one entry after the other; `right` is 0 there at the end.
-VectorXd least_squares(MatrixXd& matrix, VectorXd& right, const std::vector<bool>& non_negative) {
+/// Solves equations for weights of which those marked in `non_negative` are not below 0. A weight that would be below
+/// is held at 0, one after the other; `right` is 0 there at the end.
+VectorXd solve_non_negative(MatrixXd& matrix, VectorXd& right, const std::vector<bool>& non_negative) {
   const auto size = static_cast<int>(right.size());
   std::vector<bool> held(size, false);
   for (;;) {
@@ -173,7 +173,7 @@ VectorXd least_squares(MatrixXd& matrix, VectorXd& right, const std::vector<bool
 std::vector<Equations> QuadraticForm::equations(const std::vector<double>& offsets_px) const {
   const auto size = static_cast<Index>(offsets_px.size()) * (joint_ ? terms_ : 1);
   std::vector<Equations> result(joint_ ? 1 : terms_, {MatrixXd(size, size), VectorXd(size)});
-  // Of two pairs the later one fills what belongs to both.
+  // The later one of two pairs fills what belongs to both.
   for (std::size_t pair = 0; pair < offsets_px.size(); ++pair) fill(result, offsets_px, pair, pair + 1);
   return result;
 }
@@ -224,7 +224,7 @@ double QuadraticForm::change(const Equations& its, int first, const std::vector<
   // A term of no or little scale must not grow without bound.
   constexpr double ridge = 1e-11;
   matrix.diagonal().array() += ridge * matrix.diagonal().maxCoeff() + std::numeric_limits<double>::min();
-  const VectorXd x = least_squares(matrix, right, not_below);
+  const VectorXd x = solve_non_negative(matrix, right, not_below);
   if (weights != nullptr) {
     for (int row = 0; row < size; ++row) (*weights)(row % pairs, first + row / pairs) = x[row];
   }

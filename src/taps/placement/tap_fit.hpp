@@ -12,7 +12,7 @@ namespace dermis {
 /// Taps on one side of the centre, and their weights.
 struct PlacedTaps {
   std::vector<double> offsets_px;  ///< ascending, > 0
-  /// Of the centre, then of each pair (one of the two): per channel, a column per term.
+  /// Weights per channel: a row for the centre, then one for each pair (of one of its taps); a column for each term.
   std::array<Eigen::MatrixXd, 3> weights;
 };
 
@@ -22,15 +22,15 @@ Responses responses_of(const PlacedTaps& taps, int channel, const PowerGrid& gri
 /// Most taps on one side that are fitted; more are not worth the search.
 inline constexpr int most_fitted_pairs = 32;
 
-/// How far to look for positions.
+/// The range of a search for positions.
 enum class Search {
   everywhere,  ///< from several starts
   nearby,      ///< the given ones are of taps for about this size
   nowhere,     ///< keep the given ones
 };
 
-/// Moves taps from where they are to where the error on natural images is least, and weighs them. What the sums of the
-/// weights are, per channel and term, is kept. `joint`: the terms are changed together to meet the profile; else each
+/// Moves taps from where they are to where the error on natural images is least, and weighs them. `sums`, per channel
+/// and term, are those that weights keep. `joint`: the terms are changed together to meet the profile; else each
 /// to meet its own function. Terms marked in `non_negative` have no negative weight. No tap goes beyond farthest_px.
 PlacedTaps fit_taps(const std::array<ChannelOnPixels, 3>& channels, std::vector<double> offsets_px, Search how,
                     int farthest_px, Fetch fetch, bool joint, const std::vector<bool>& non_negative,

@@ -1,4 +1,4 @@
-// What taps are worth on natural images, before a pixel is touched.
+// The error of taps to expect on natural images, before a pixel is touched.
 #pragma once
 
 #include <Eigen/Core>
@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "taps/model/separable_model.hpp"
-#include "taps/placement/lattice.hpp"
+#include "taps/prediction/lattice_waves.hpp"
 #include "taps/prediction/natural_images.hpp"
 
 namespace dermis {
@@ -22,12 +22,12 @@ struct PowerGrid {
 
   /// The sums over the fine frequencies of weight x cos(u k), for k = 0..period/2.
   Eigen::VectorXd moments(const Eigen::VectorXd& x) const;
-  /// One of them, for fewer than a logarithm of the period.
+  /// One of the moments: faster as long as fewer than log2(period) of them are asked for.
   double moment(const Eigen::VectorXd& x, int k) const;
 
   /// Values at the coarse frequencies, taken to the fine ones linearly in the logarithm of frequency.
   Eigen::MatrixXd to_fine(const Eigen::MatrixXd& at_coarse) const;
-  /// In column k what each of the coarse values adds to the moment k of the fine ones.
+  /// Column k has what each of the coarse values adds to moment k of the fine ones.
   const Eigen::MatrixXd& moments_of_coarse() const;
 
   int period_px;
@@ -42,9 +42,9 @@ struct PowerGrid {
 
   mutable Eigen::FFT<double> fft_;             ///< keeps its factors
   mutable Eigen::MatrixXd moments_of_coarse_;  ///< made when first asked for
-  Eigen::VectorXd cosines_;                    ///< of 2 pi j / period, j = 0..period-1
+  Eigen::VectorXd cosines_;                    ///< cos(2 pi j / period), j = 0..period-1
   std::vector<int> below_;                     ///< coarse frequency below each fine one
-  Eigen::VectorXd share_of_next_;              ///< of the one above
+  Eigen::VectorXd share_of_next_;              ///< weight of the coarse frequency above it
 };
 
 /// Responses along one axis of the terms of one channel, one per column.
@@ -53,11 +53,11 @@ using Responses = Eigen::MatrixXd;
 /// The error of sum over terms of scale alpha(u) beta(v) against the profile on pixels, squared and summed over images,
 /// where beta is given and alpha = model + delta:
 ///     constant - 2 sum over terms of delta linear + sum over pairs of terms of delta delta' quadratic, summed over u.
-/// All per coarse frequency.
+/// Each row is of one coarse frequency.
 struct AxisError {
   Eigen::VectorXd constant;
   Eigen::MatrixXd linear;     ///< a column per term; scales are in it
-  Eigen::MatrixXd quadratic;  ///< of the terms t, t' in the column pair_of(t, t')
+  Eigen::MatrixXd quadratic;  ///< the terms t, t' have the column pair_of(t, t')
 
   static int pair_of(int t, int other) { return t >= other ? t * (t + 1) / 2 + other : other * (other + 1) / 2 + t; }
 };
@@ -85,11 +85,11 @@ class ChannelOnPixels {
   Eigen::VectorXd scale_;
   Eigen::MatrixXd weighted_truth_;  ///< spectrum of the profile on pixels, coarse by fine, times the power
   Eigen::VectorXd squared_truth_;   ///< its square times the power, summed over fine frequencies
-  Responses at_coarse_;             ///< of the model
+  Responses at_coarse_;             ///< of the model, as are those at_fine_
   Responses at_fine_;
 };
 
-/// Relative L2 distance, all channels together, from squared errors and truths of the channels. Images have mean 1.
+/// Relative L2 distance, all channels together, from squared errors and truths of the channels, for images of mean 1.
 double relative_l2(const std::array<double, 3>& squared_errors, const std::array<double, 3>& truth_powers);
 
 }  // namespace dermis

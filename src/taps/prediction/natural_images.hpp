@@ -1,4 +1,4 @@
-// What images look like on average: the spectrum that errors are weighed with.
+// The mean spectrum of natural images, which errors are weighed with.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,10 +14,10 @@ struct Frequencies {
   int size() const { return static_cast<int>(u.size()); }
 };
 
-/// 0, then steps of equal ratio from the lowest frequency of the images to `highest`.
+/// Frequencies in steps of equal ratio, from the lowest of the images to `highest`, after a first one of 0.
 Frequencies coarse_frequencies(double highest = std::numbers::pi);
 
-/// Those of a discrete Fourier transform over `period_px` pixels.
+/// The frequencies of a discrete Fourier transform over `period_px` pixels.
 Frequencies fine_frequencies(int period_px);
 
 /// The mean squared amplitude at (u, v) of images of mean 1 whose amplitude falls as 1 / frequency (Field 1987), 512 px

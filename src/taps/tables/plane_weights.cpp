@@ -4,21 +4,21 @@
 #include <cmath>
 #include <cstddef>
 
-#include "taps/placement/quanta.hpp"
+#include "taps/tables/quanta.hpp"
 #include "taps/tables/radial_table.hpp"
 
 namespace dermis {
 
 namespace {
 
-/// How a surface differs from a plane parallel to the screen whose pixels are the level's: the length of surface that a
-/// tap stands for, and its distance, are longer by these factors.
+/// A surface beside the plane of the level, which is parallel to the screen: the length of surface that a tap stands
+/// for, and the distance of the tap, are longer by these factors.
 struct Stretch {
   double length = 1;
   double distance = 1;
 };
 
-/// The weights of a pass over such a surface: of all terms of the centre, then of the first pair, ... of one channel.
+/// The weights of one channel in a pass over a surface: tap by tap, the centre first, each tap with all its terms.
 std::vector<double> weights_on_surface(const TapLevel& level, const std::vector<Term>& terms, int c, Stretch stretch) {
   const double pixel_mm = 1 / static_cast<double>(level.px_per_mm);
   const double centre_mm = static_cast<double>(level.centre_half_width_px) * pixel_mm * stretch.length;

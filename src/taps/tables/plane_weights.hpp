@@ -1,25 +1,26 @@
-// What the taps of a level are worth on flat and on smooth blocks.
+// Weights of the taps of a level on flat and on smooth blocks.
 #pragma once
 
 #include <array>
 #include <vector>
 
-#include "dermis/taps.hpp"
+#include "dermis/tap_tables.hpp"
 #include "taps/placement/tap_fit.hpp"
 
 namespace dermis {
 
-// All of them are rows of weights per channel, of all terms of each row.
+// All results list weights tap by tap, each tap with all its terms, as TapLevel has them.
 
-/// In quanta that sum to what they should.
+/// Flat weights for a surface whose pixels are `stretch` times as long as the level's, rounded to quanta that sum to
+/// the term's sum.
 std::vector<std::array<float, 3>> make_flat_weights(const TapLevel& level, const std::vector<Term>& terms,
                                                     const PlacedTaps& placed, double stretch);
 
-/// How the flat weights change with q, see Taps: as secants over the range that q may have.
+/// Change of the flat weights with q, see Taps: secants over the range that q may have.
 std::vector<std::array<float, 3>> make_stretch_weights(const TapLevel& level, const std::vector<Term>& terms,
                                                        const PlacedTaps& placed);
 
-/// How the flat weights change with k, see Taps: if the length of surface under a tap grows by one part per pixel from
+/// Change of the flat weights with k, see Taps: if the length of surface under a tap grows by one part per pixel from
 /// the centre on, its distance grows by half of that.
 std::vector<std::array<float, 3>> make_skew_weights(const TapLevel& level, const std::vector<Term>& terms);
 

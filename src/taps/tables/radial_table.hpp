@@ -1,9 +1,9 @@
-// Functions of distance as tables that a kernel evaluates from the squared distance.
+// RadialTable: made and read.
 #pragma once
 
 #include <functional>
 
-#include "dermis/taps.hpp"
+#include "dermis/tap_tables.hpp"
 
 namespace dermis {
 

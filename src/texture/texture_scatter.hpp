@@ -1,0 +1,39 @@
+// A method that scatters light in textures.
+#pragma once
+
+#include <string>
+
+#include "dermis/texture.hpp"
+#include "texture/texture_run.hpp"
+
+namespace dermis {
+
+/// A TextureMethod made for a profile: its tables, programs, buffers and passes.
+class TextureScatter {
+ public:
+  virtual ~TextureScatter() = default;
+  TextureScatter(const TextureScatter&) = delete;
+  TextureScatter& operator=(const TextureScatter&) = delete;
+
+  const cl::Program& image_program() const { return image_program_; }
+
+  /// The error to expect of the fit to the profile: see TapSet.
+  virtual double predicted_rel_l2() const = 0;
+
+  /// Takes one texture from the caller's images to the outputs, and waits for it. For several threads.
+  virtual TextureStats scatter(TextureRun& run) const = 0;
+
+ protected:
+  /// `interleaved`: the light has a float4 for each texel, whose w says whether the texel is of an object, instead of
+  /// three planes.
+  TextureScatter(const Device& device, const TextureDescription& images, bool interleaved);
+
+  /// Passes see neither albedo nor mask, and are the same with and without.
+  static cl::Program build_passes(const Device& device, const TextureDescription& images, const char* file,
+                                  const std::string& constants);
+
+ private:
+  cl::Program image_program_;
+};
+
+}  // namespace dermis

@@ -1,0 +1,182 @@
+// Passes of several terms over a few pixels.
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "dermis/oracle/compare.hpp"
+#include "dermis/oracle/reference.hpp"
+#include "oracle/support/made_frame.hpp"
+#include "oracle/support/made_taps.hpp"
+#include "oracle/support/separable_run.hpp"
+#include "support/catch.hpp"
+
+namespace dermis::oracle {
+
+namespace {
+
+constexpr TapWeight one_mm{{1, 1, 1}, {}};
+
+/// 3 x 3 pixels, light u(x) v(y) in red, so that each term's light is a product too.
+constexpr std::array<double, 3> u{1, 10, 100};
+constexpr std::array<double, 3> v{2, 3, 7};
+
+MadeFrame nine_pixels() {
+  MadeFrame made(3, 3, one_px_per_mm, 0);
+  for (std::size_t y = 0; y < 3; ++y) {
+    for (std::size_t x = 0; x < 3; ++x) made.light[3 * (3 * y + x)] = static_cast<float>(u[x] * v[y]);
+  }
+  return made;
+}
+
+/// The same seen two ways: by flat weights, or by those that the others are there.
+std::vector<MadeFrame> both_ways(const MadeFrame& made) { return {made, never_flat(made)}; }
+
+/// The mean with the weights `center` and, for both neighbours, `side`.
+double mean(const std::array<double, 3>& values, std::size_t i, double center, double side) {
+  double weights = center;
+  double sum = center * values[i];
+  for (const std::size_t j : {i - 1, i + 1}) {
+    if (j > 2) continue;
+    weights += side;
+    sum += side * values[j];
+  }
+  return sum / weights;
+}
+
+double difference(const std::array<double, 3>& values, std::size_t i, double total, double side) {
+  double sum = total * values[i];
+  for (const std::size_t j : {i - 1, i + 1}) {
+    if (j < 3) sum += side * (values[j] - values[i]);
+  }
+  return sum;
+}
+
+}  // namespace
+
+TEST_CASE("two normalised terms by hand", "[terms]") {
+  Material material = tiny_material();
+  add_term(material.taps, tiny_term(0.125, 0.75), one_mm);
+  share_out(material.taps, 0.25);
+  for (const MadeFrame& made : both_ways(nine_pixels())) {
+    const Reference reference = run(made, material);
+    for (std::size_t y = 0; y < 3; ++y) {
+      for (std::size_t x = 0; x < 3; ++x) {
+        const double first = mean(u, x, 0.5, 0.25) * mean(v, y, 0.5, 0.25);
+        const double second = mean(u, x, 0.75, 0.125) * mean(v, y, 0.75, 0.125);
+        CHECK(reference.scattered(static_cast<int>(x), static_cast<int>(y)) ==
+              Approx(0.75 * first + 0.25 * second).epsilon(1e-14));
+      }
+    }
+  }
+}
+
+TEST_CASE("a term may have less light in its centre", "[terms]") {
+  Material material = tiny_material();
+  material.taps.levels[0].centre_gain[0] = grey(0.5);
+  for (const MadeFrame& made : both_ways(three_pixels())) {
+    CHECK(run(made, material).scattered(1, 0) == Approx((0.25 * 10 + 0.25 * 101) / 0.75));
+  }
+}
+
+TEST_CASE("a difference term by hand: taps that are missing count as the pixel", "[terms]") {
+  for (const double sum : {0.0, 1.0, -0.5}) {
+    Material material = tiny_material();
+    add_term(material.taps, tiny_difference(0.125, sum), one_mm);
+    material.taps.terms[1].scale = grey(0.5);
+    for (const MadeFrame& made : both_ways(nine_pixels())) {
+      const Reference reference = run(made, material);
+      for (std::size_t y = 0; y < 3; ++y) {
+        for (std::size_t x = 0; x < 3; ++x) {
+          INFO("sum " << sum << " at " << x << ", " << y);
+          const double first = mean(u, x, 0.5, 0.25) * mean(v, y, 0.5, 0.25);
+          const double second = difference(u, x, sum, 0.125) * difference(v, y, sum, 0.125);
+          CHECK(reference.scattered(static_cast<int>(x), static_cast<int>(y)) ==
+                Approx(first + 0.5 * second).epsilon(1e-14));
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE("the centre of a difference term counts nothing", "[terms]") {
+  Material material = tiny_material();
+  add_term(material.taps, tiny_difference(0.125, 0), one_mm);
+  const MadeFrame made = never_flat(nine_pixels());
+  const Reference before = run(made, material);
+  material.taps.terms[1].centre = material.taps.terms[0].centre;
+  const Reference after = run(made, material);
+  CHECK(after.scattered.values == before.scattered.values);
+  CHECK(after.scattered_bound.values == before.scattered_bound.values);
+  material.taps.terms[0].centre = linear_table(0, {0.4});
+  CHECK(run(made, material).scattered.values != before.scattered.values);
+}
+
+TEST_CASE("a weight may be a share of the first term's", "[terms]") {
+  // 1/8 from the term's own falloff, less a quarter of 1/4.
+  Material material = tiny_material();
+  add_term(material.taps, tiny_difference(0.125, 0), {{1, 1, 1}, {-0.25F, -0.25F, -0.25F}});
+  const Reference both = run(never_flat(nine_pixels()), material);
+  for (const std::size_t x : {0U, 1U, 2U}) {
+    const double second = difference(u, x, 0, 0.0625) * difference(v, 1, 0, 0.0625);
+    CHECK(both.scattered(static_cast<int>(x), 1) ==
+          Approx(mean(u, x, 0.5, 0.25) * mean(v, 1, 0.5, 0.25) + second).epsilon(1e-14));
+  }
+  // All of it and nothing else: the first term again, if the centre is the same.
+  Material again = tiny_material();
+  add_term(again.taps, tiny_term(0, 0.5), {{}, {1, 1, 1}});
+  share_out(again.taps, 0.25);
+  CHECK(compare(run(nine_pixels(), again).scattered, run(nine_pixels(), tiny_material()).scattered).max < 1e-12);
+}
+
+TEST_CASE("without taps a term is its sum at one point", "[terms]") {
+  for (const bool across : {true, false}) {
+    // Half a pixel to the mm across the passes that have taps: too narrow for a radius of 0.9 mm.
+    MadeFrame made = three_pixels(!across);
+    made.camera = across ? Camera::orthographic(1, 0.5) : Camera::orthographic(0.5, 1);
+    Material material = tiny_material();
+    material.taps.radius_mm = 0.9;
+    add_term(material.taps, tiny_difference(0.125, 2), one_mm);
+    material.taps.terms[1].scale = grey(0.5);
+    for (const MadeFrame& either : both_ways(made)) {
+      const Reference reference = run(either, material);
+      for (std::size_t i = 0; i < 3; ++i) {
+        const double second = 2 * difference(u, i, 2, 0.125);
+        CHECK(reference.scattered.values[3 * i] == Approx(mean(u, i, 0.5, 0.25) + 0.5 * second).epsilon(1e-14));
+      }
+    }
+  }
+}
+
+TEST_CASE("a pixel that is left alone gives its light to every term and keeps it", "[terms]") {
+  // The middle column is only read. To the second pass it shows its light, times the sum for a difference.
+  MadeFrame made = nine_pixels();
+  made.mask.assign(9, 1);
+  for (const std::size_t y : {0U, 1U, 2U}) made.mask[3 * y + 1] = 0.01F;
+  made.mask[4] = 1;
+  Material material = tiny_material();
+  add_term(material.taps, tiny_difference(0.125, 2), one_mm);
+  const Reference reference = run(made, material);
+  CHECK(reference.touched.values == std::vector<double>{1, 0, 1, 1, 1, 1, 1, 0, 1});
+  CHECK(reference.scattered(1, 0) == u[1] * v[0]);
+  CHECK(reference.scattered_bound(1, 0) == 0);
+  // The middle scatters across, between two that do not.
+  const double first = 0.5 * mean(u, 1, 0.5, 0.25) * v[1] + 0.25 * u[1] * (v[0] + v[2]);
+  const double own = difference(u, 1, 2, 0.125) * v[1];
+  const double second = 2 * own + 0.125 * (2 * u[1] * v[0] - own) + 0.125 * (2 * u[1] * v[2] - own);
+  CHECK(reference.scattered(1, 1) == Approx(first + second).epsilon(1e-14));
+}
+
+TEST_CASE("two pixels of one term beside two of two", "[terms]") {
+  MadeFrame row(4, 1, one_px_per_mm, 0);
+  row.material = {1, 1, 2, 2};
+  for (std::size_t i = 0; i < 4; ++i) row.light[3 * i] = static_cast<float>(1 + i * i);  // 1, 2, 5, 10
+  std::vector tiny{tiny_material(1), tiny_material(2)};
+  add_term(tiny[1].taps, tiny_difference(0.125, 1), one_mm);
+  const Reference by_hand = separable(row.frame(), tiny, {});
+  CHECK(by_hand.scattered(0, 0) == Approx((0.5 * 1 + 0.25 * 2) / 0.75));
+  CHECK(by_hand.scattered(1, 0) == Approx((0.5 * 2 + 0.25 * 1) / 0.75));
+  CHECK(by_hand.scattered(2, 0) == Approx((0.5 * 5 + 0.25 * 10) / 0.75 + 5 + 0.125 * 5));
+  CHECK(by_hand.scattered(3, 0) == Approx((0.5 * 10 + 0.25 * 5) / 0.75 + 10 - 0.125 * 5));
+}
+
+}  // namespace dermis::oracle

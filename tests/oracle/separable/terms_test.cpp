@@ -1,0 +1,202 @@
+// Passes of several terms over any frame.
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "dermis/oracle/compare.hpp"
+#include "dermis/oracle/reference.hpp"
+#include "oracle/support/made_frame.hpp"
+#include "oracle/support/made_taps.hpp"
+#include "oracle/support/separable_run.hpp"
+#include "support/catch.hpp"
+#include "support/random.hpp"
+
+namespace dermis::oracle {
+
+namespace {
+
+constexpr TapWeight one_mm{{1, 1, 1}, {}};
+
+/// A frame with relief, a mask that leaves some pixels alone, and random light.
+MadeFrame rough_frame(Random& random, int width, int height) {
+  MadeFrame made(width, height, Camera::perspective(40, 60, 20, 6), 0);
+  for (float& light : made.light) light = static_cast<float>(random.uniform(0, 2));
+  for (std::size_t i = 0; i < made.pixels(); ++i) {
+    made.depth.push_back(static_cast<float>(random.uniform(8, 10)));
+    made.mask.push_back(static_cast<float>(random.uniform(0.02, 1)));
+  }
+  return made;
+}
+
+Term gaussian_difference(double sigma_mm, double sum, double scale) {
+  Term term = gaussian_term(sigma_mm);
+  term.normalised = false;
+  term.sum = grey(sum);
+  term.scale = grey(scale);
+  return term;
+}
+
+}  // namespace
+
+TEST_CASE("the first term's weight follows depth and width where others share it", "[terms]") {
+  Random random(11);
+  MadeFrame made = rough_frame(random, 33, 9);
+  Material material = gaussian_material(0.5, 4);
+  const Reference alone = run(made, material);
+  const auto length = static_cast<float>(0.25);
+  // Half the first term's weight by length, half by share.
+  add_term(material.taps, gaussian_term(0.5), {{length / 2, length / 2, length / 2}, {0.5F, 0.5F, 0.5F}});
+  share_out(material.taps, 0.75);
+  CHECK(compare(run(made, material).scattered, alone.scattered).max < 1e-13);
+  material.taps.terms[1].falloff = gaussian_term(0.4).falloff;
+  CHECK(compare(run(made, material).scattered, alone.scattered).max > 1e-3);
+}
+
+TEST_CASE("constant light stays constant if scale times sum squared adds to 1", "[terms]") {
+  Random random(12);
+  for (const double jitter : {0.0, 0.4}) {
+    const double sums[] = {1, random.uniform(-2, 2), 0};
+    const double scales[] = {random.uniform(0.5, 1.5), random.uniform(-1, 1), random.uniform(-1, 1)};
+    Material material = gaussian_material(0.5, 4);
+    add_term(material.taps, gaussian_term(0.2), {{0.25F, 0.2F, 0.3F}, {0.1F, 0, -0.1F}});
+    for (std::size_t t = 0; t < 3; ++t) {
+      add_term(material.taps, gaussian_difference(0.4, sums[t], scales[t]), {{0.25F, 0.2F, 0.3F}, {-0.1F, 0, 0.5F}});
+    }
+    // Of float32 scales the exact rest goes to the first term; what is lost is the rounding of that.
+    double rest = 0.75;
+    for (std::size_t t = 2; t < 5; ++t) {
+      const double sum = static_cast<double>(material.taps.terms[t].sum[0]);
+      rest -= static_cast<double>(material.taps.terms[t].scale[0]) * sum * sum;
+    }
+    material.taps.terms[0].scale = grey(rest);
+    material.taps.terms[1].scale = grey(0.25);
+    MadeFrame made = rough_frame(random, 41, 13);
+    made.light.assign(made.light.size(), 0.75F);
+    for (const double aspect : {1.0, 0.05}) {  // seen so flat that there are no taps across
+      made.camera.scale_x = 40 * aspect;
+      Options options;
+      options.jitter = jitter;
+      const Reference reference = run(made, material, options);
+      double touched = 0;
+      for (const double t : reference.touched.values) touched += t;
+      CHECK(touched > 200);
+      if (aspect == 1) CHECK(touched < 41 * 13);
+      for (const double light : reference.scattered.values) {
+        CHECK(light == Approx(0.75).epsilon(std::abs(rest) * 0x1p-24 + 1e-13));
+      }
+    }
+  }
+}
+
+TEST_CASE("terms are passes of their own", "[terms]") {
+  Random random(13);
+  const MadeFrame made = rough_frame(random, 37, 21);
+  const std::vector<Term> terms{gaussian_term(0.5), gaussian_term(0.3), gaussian_difference(0.6, 0.5, 1)};
+  const double scales[] = {0.5, -0.75, 1.25};
+  for (const double jitter : {0.0, 0.5}) {
+    Options options;
+    options.jitter = jitter;
+    options.seed = static_cast<std::uint32_t>(random.integer(0, 1 << 30));
+    Material material = gaussian_material(0.5, 4);
+    const Taps first = material.taps;
+    std::vector<Picture> alone;
+    for (std::size_t t = 0; t < 2; ++t) {
+      material.taps.terms = {terms[t]};
+      alone.push_back(run(made, material, options).scattered);
+    }
+    // The weights of the first term limit those of a difference.
+    material.taps = first;
+    add_term(material.taps, terms[2], first.levels[0].weights[0]);
+    material.taps.terms[0].scale = grey(0);
+    alone.push_back(run(made, material, options).scattered);
+    material.taps = first;
+    for (const std::size_t t : {1U, 2U}) add_term(material.taps, terms[t], first.levels[0].weights[0]);
+    for (std::size_t t = 0; t < 3; ++t) material.taps.terms[t].scale = grey(scales[t]);
+    const Reference all = run(made, material, options);
+    double worst = 0;
+    int scattered = 0;
+    for (std::size_t i = 0; i < all.scattered.values.size(); ++i) {
+      if (all.touched.values[i / 3] == 0) {
+        CHECK(all.scattered.values[i] == static_cast<double>(made.light[i]));
+        continue;
+      }
+      double sum = 0;
+      for (std::size_t t = 0; t < 3; ++t) sum += scales[t] * alone[t].values[i];
+      worst = std::max(worst, std::abs(sum - all.scattered.values[i]));
+      ++scattered;
+    }
+    CHECK(worst < 1e-13);
+    CHECK(scattered > 1000);
+  }
+}
+
+TEST_CASE("materials of one and of several terms side by side", "[terms]") {
+  Random random(14);
+  MadeFrame made = rough_frame(random, 40, 12);
+  for (std::size_t i = 0; i < made.pixels(); ++i) made.material.push_back(static_cast<float>(random.integer(0, 3)));
+  // Either left alone or wide enough for taps by itself, whatever it shares its block with; and one level for all.
+  for (float& mask : made.mask) mask = mask < 0.2F ? 0.01F : mask;
+  std::vector materials{gaussian_material(0.5, 4, 1), gaussian_material(0.3, 4, 2), gaussian_material(0.4, 4, 3)};
+  add_term(materials[1].taps, gaussian_difference(0.5, 0, 0.5), {{0.25F, 0.25F, 0.25F}, {0.5F, 0.5F, 0.5F}});
+  for (const double sigma_mm : {0.2, 0.3}) {
+    add_term(materials[2].taps, gaussian_difference(sigma_mm, 0.5, -0.5), {{0.25F, 0.25F, 0.25F}, {}});
+  }
+  const Reference together = separable(made.frame(), materials, {});
+  for (std::size_t m = 0; m < 3; ++m) {
+    const Reference alone = run(made, materials[m]);
+    int compared = 0;
+    for (std::size_t i = 0; i < made.pixels(); ++i) {
+      if (made.material[i] != static_cast<float>(m + 1)) continue;
+      for (std::size_t c = 0; c < 3; ++c) {
+        if (together.scattered.values[3 * i + c] != alone.scattered.values[3 * i + c]) FAIL_CHECK(m << " at " << i);
+        if (together.scattered_bound.values[3 * i + c] != alone.scattered_bound.values[3 * i + c]) FAIL_CHECK(i);
+      }
+      ++compared;
+    }
+    CHECK(compared > 50);
+  }
+}
+
+TEST_CASE("all terms of a pixel are rotated by the same angle", "[terms]") {
+  // One pair of taps at 8 px; only the middle scatters. Light x^2 in red, y^2 in green, and 0 in the middle.
+  Material material = tiny_material();
+  material.taps.radius_mm = 8;
+  material.taps.terms[0].falloff = linear_table(0, {0.25});
+  material.taps.levels = {made_level(1, {8}, 1)};
+  MadeFrame made(21, 21, one_px_per_mm, 0);
+  for (int y = -10; y <= 10; ++y) {
+    for (int x = -10; x <= 10; ++x) {
+      MadeFrame::set_rgb(made.light, static_cast<std::size_t>(21 * (y + 10) + x + 10), static_cast<float>(x * x),
+                         static_cast<float>(y * y), 1);
+    }
+  }
+  made.mask.assign(made.pixels(), 0.01F);
+  made.mask[21 * 10 + 10] = 1;
+  Options options;
+  options.jitter = 1;
+  for (options.seed = 0; options.seed < 10; ++options.seed) {
+    const Reference one = run(made, material, options);
+    // A difference with the weights and the sum of the mean is the mean, as nothing is missing.
+    Material two = material;
+    Term same = material.taps.terms[0];
+    same.normalised = false;
+    add_term(two.taps, same, one_mm);
+    share_out(two.taps, -1);
+    const Reference both = run(made, two, options);
+    for (int c = 0; c < 3; ++c) CHECK(both.scattered(10, 10, c) == Approx(one.scattered(10, 10, c)).epsilon(1e-14));
+    // Of a zero sum: what the others show to the second pass is zero, and the first pass gives their light / 2, half of
+    // which the second takes away.
+    two.taps.terms[0].scale = grey(0);
+    two.taps.terms[1].scale = grey(1);
+    two.taps.terms[1].sum = grey(0);
+    const Picture zero_sum = run(made, two, options).scattered;
+    const double x2 = zero_sum(10, 10, 0);
+    const double y2 = zero_sum(10, 10, 1);
+    CHECK(x2 + y2 == Approx(-0.25 * 64).epsilon(0.17));  // 8 px, rounded to whole pixels on each axis
+    CHECK(std::abs(zero_sum(10, 10, 2)) == 0);
+  }
+}
+
+}  // namespace dermis::oracle

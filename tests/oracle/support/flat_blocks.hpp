@@ -1,0 +1,116 @@
+// Materials and frames that show which blocks are flat.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <functional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "dermis/oracle/reference.hpp"
+#include "oracle/support/made_frame.hpp"
+#include "oracle/support/made_taps.hpp"
+#include "oracle/support/separable_run.hpp"
+
+namespace dermis::oracle {
+
+/// What a level has on a smooth block as its number.
+constexpr int smooth = 1536;
+
+/// The kernel radius where a level begins, px.
+inline double first_radius_px(int level) { return std::ldexp(0.5 * (1 + level % 16 / 16.0), level / 16); }
+
+/// A kernel of `radius_mm` with a pair of taps on the neighbours, on every level. On flat blocks they are worth 1/8 +
+/// the number of the level / 1024 each, on smooth ones 3/2 more, on others nothing, as they have no length. Another
+/// pair, as far away as the kernel goes, is worth nothing at all.
+inline Material telling_material(double radius_mm, int id = 0) {
+  Material material;
+  material.id = id;
+  material.taps.radius_mm = radius_mm;
+  material.taps.relative_width = {1, 1, 1};
+  material.taps.terms.push_back(tiny_term(0.25, 0.5));
+  for (int i = 0; i < 8 * 16; ++i) {
+    // The pixels are all larger than those of the levels, by as much as counts.
+    material.taps.levels.push_back(made_level(100, {1, std::max(2, static_cast<int>(first_radius_px(i)))}, 0));
+    TapLevel& level = material.taps.levels.back();
+    const auto on_neighbours = [](double weight) {
+      return [=](std::size_t pair, std::size_t, std::size_t) { return pair == 0 ? weight : 0; };
+    };
+    lay_flat(level, material.taps.terms, on_neighbours(0.125 + i / 1024.0));
+    lay_smooth(level, 1, on_neighbours(1.5 / static_cast<double>(Taps::most_stretch)), on_neighbours(0));
+  }
+  return material;
+}
+
+constexpr int not_flat = -2;
+constexpr int no_taps = -1;
+
+/// The level for a kernel radius.
+inline int level_for(double radius_px) {
+  const double octave = std::floor(std::log2(2 * radius_px));
+  return static_cast<int>(16 * octave + std::floor(16 * (2 * radius_px / std::exp2(octave) - 1)));
+}
+
+/// Sets the light to the square of the place along a pass: the second difference is 2 everywhere.
+inline void light_squares(MadeFrame& made, bool down) {
+  for (std::size_t i = 0; i < made.pixels(); ++i) {
+    const auto width = static_cast<std::size_t>(made.width);
+    const auto place = static_cast<float>(down ? i / width : i % width);
+    MadeFrame::set_rgb(made.light, i, place * place, 0, 0);
+  }
+}
+
+/// The level of the flat or smooth block in which a pixel lies, as told by the light of squares; not_flat if it keeps
+/// its light. Both neighbours must be of the same material.
+inline int told(const Reference& reference, int x, int y, bool down) {
+  const double place = down ? y : x;
+  const double gain = (reference.scattered(x, y) - place * place) / 2;
+  return gain == 0 ? not_flat : static_cast<int>(std::lround((gain - 0.125) * 1024));
+}
+
+/// A frame and the same seen along the other axis, rows being columns.
+inline MadeFrame transposed(const MadeFrame& made) {
+  MadeFrame result = made;
+  std::swap(result.width, result.height);
+  std::swap(result.camera.scale_x, result.camera.scale_y);
+  std::swap(result.camera.center_x, result.camera.center_y);
+  const auto turn = [&](const std::vector<float>& from, std::vector<float>& to, std::size_t channels) {
+    if (from.empty()) return;
+    const auto width = static_cast<std::size_t>(made.width);
+    const auto height = static_cast<std::size_t>(made.height);
+    for (std::size_t y = 0; y < height; ++y) {
+      for (std::size_t x = 0; x < width; ++x) {
+        for (std::size_t c = 0; c < channels; ++c) {
+          to[channels * (x * height + y) + c] = from[channels * (y * width + x) + c];
+        }
+      }
+    }
+  };
+  turn(made.light, result.light, 3);
+  turn(made.albedo, result.albedo, 3);
+  turn(made.depth, result.depth, 1);
+  turn(made.material, result.material, 1);
+  turn(made.mask, result.mask, 1);
+  return result;
+}
+
+inline Reference run_as_is(const MadeFrame& made, std::span<const Material> materials, const Options& options = {}) {
+  return separable(made.frame(), materials, options);
+}
+
+/// A row of blocks of 1 px per mm, its depth in mm as a function of x.
+inline MadeFrame row_of_blocks(int width, const std::function<double(int)>& depth_mm) {
+  MadeFrame made(width, 5, one_px_per_mm);
+  for (int i = 0; i < 5 * width; ++i) made.depth.push_back(static_cast<float>(depth_mm(i % width)));
+  light_squares(made, false);
+  return made;
+}
+
+/// A plane that jumps by `by_mm` at x = `at`.
+inline MadeFrame step(int width, int at, double by_mm) {
+  return row_of_blocks(width, [=](int x) { return x < at ? 10 : 10 + by_mm; });
+}
+
+}  // namespace dermis::oracle

@@ -1,0 +1,140 @@
+// The pixels of a frame as a float32 device might see them. For the oracle's bounds.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <span>
+#include <vector>
+
+#include "dermis/oracle/reference.hpp"
+#include "oracle/support/made_frame.hpp"
+
+struct FloatPixel {
+  int material = -1;
+  bool bad = false;
+  bool wide = false;
+  std::array<float, 3> position{};
+  std::array<float, 2> px_per_mm{};
+  std::array<float, 2> segment{};
+  int shear = 0;      ///< columns per row of the vertical pass, times 4096
+  float covered = 1;  ///< share
+  std::array<float, 3> k{};
+  float spread = 0;
+  std::array<float, 3> x{};
+
+  bool touched() const { return wide && !bad; }
+};
+
+inline bool is_sheared(const MadeFrame& made, const dermis::Options& options) {
+  return !made.depth.empty() && options.sheared && options.jitter == 0;
+}
+
+/// Between changes of position.
+inline float float_shear(const std::array<float, 3>& x, const std::array<float, 3>& y) {
+  const float mixed = x[0] * y[0] + x[1] * y[1] + x[2] * y[2];
+  return std::clamp(-mixed / (x[0] * x[0] + x[1] * x[1] + x[2] * x[2]), -1.0F, 1.0F);
+}
+
+inline int float_side(int shear, int offset) { return std::clamp((shear * offset + 2048) >> 12, -32, 32); }
+
+class FloatSurface {
+ public:
+  FloatSurface(const MadeFrame& made, std::span<const dermis::oracle::Material> materials,
+               const dermis::Options& options)
+      : pixels(made.pixels()), made_(made), materials_(materials), options_(options) {
+    for (std::size_t i = 0; i < pixels.size(); ++i) prepare(i);
+    for (std::size_t i = 0; i < pixels.size(); ++i) measure_segments(i);
+  }
+
+  std::vector<FloatPixel> pixels;
+
+ private:
+  float albedo(std::size_t i) const { return made_.albedo.empty() ? 1 : made_.albedo[i]; }
+  bool raw() const { return options_.lighting == dermis::Lighting::raw; }
+  float mix() const { return static_cast<float>(options_.albedo_mix); }
+
+  void prepare(std::size_t i) {
+    FloatPixel& pixel = pixels[i];
+    for (std::size_t c = 0; c < 3; ++c) {
+      const float rho = albedo(3 * i + c);
+      const float light = made_.light[3 * i + c];
+      pixel.bad = pixel.bad || !std::isfinite(light);
+      pixel.x[c] = raw() ? light : (rho >= 1e-4F ? light / rho : 0);
+      if (mix() > 0) pixel.x[c] *= std::pow(std::fmax(rho, 0.0F), mix());
+    }
+    if (made_.material.empty()) {
+      pixel.material = 0;
+    } else {
+      for (std::size_t m = 0; m < materials_.size(); ++m) {
+        if (made_.material[i] == static_cast<float>(materials_[m].id)) pixel.material = static_cast<int>(m);
+      }
+    }
+    if (!made_.matte.empty()) pixel.covered = std::fmin(made_.matte[i], 1.0F);
+    if (!(pixel.covered > 0)) pixel.material = -1;
+    if (pixel.material < 0) return;
+    const dermis::oracle::Material& material = materials_[pixel.material];
+    const auto sx = static_cast<float>(made_.camera.scale_x);
+    const auto sy = static_cast<float>(made_.camera.scale_y);
+    const auto mm = static_cast<float>(made_.mm_per_unit);
+    const float z = made_.depth.empty() ? 0 : made_.depth[i] * mm;
+    const float per_px = made_.camera.projection == dermis::Camera::Projection::perspective ? z : mm;
+    const int column = static_cast<int>(i) % made_.width;
+    const int row = static_cast<int>(i) / made_.width;
+    pixel.px_per_mm = {sx / per_px, sy / per_px};
+    pixel.position = {(static_cast<float>(column) + 0.5F - static_cast<float>(made_.camera.center_x)) * per_px / sx,
+                      (static_cast<float>(row) + 0.5F - static_cast<float>(made_.camera.center_y)) * per_px / sy, z};
+    for (std::size_t c = 0; c < 3; ++c) {
+      pixel.k[c] = made_.mask.empty() ? 1 : std::fmin(made_.mask[i], 1.0F);
+      if (material.width_follows_albedo) {
+        const float a = std::fmin(std::fmax(albedo(3 * i + c), 0.0F), 1.0F);
+        pixel.k[c] /= 1.9F - a + 3.5F * (a - 0.8F) * (a - 0.8F);
+      }
+      pixel.spread = std::fmax(pixel.spread, pixel.k[c] * material.taps.relative_width[c]);
+    }
+    const float radius = static_cast<float>(material.taps.radius_mm);
+    pixel.wide = std::fmax(pixel.px_per_mm[0], pixel.px_per_mm[1]) * pixel.spread * radius >= 0.5F;
+  }
+
+  void measure_segments(std::size_t i) {
+    FloatPixel& pixel = pixels[i];
+    if (pixel.material < 0) return;
+    const int place[2] = {static_cast<int>(i) % made_.width, static_cast<int>(i) / made_.width};
+    const int size[2] = {made_.width, made_.height};
+    const int step[2] = {1, made_.width};
+    const bool perspective = made_.camera.projection == dermis::Camera::Projection::perspective;
+    std::array<std::array<float, 3>, 2> tangents{};
+    for (int axis = 0; axis < 2; ++axis) {
+      const auto difference = [&](int sign) -> float {
+        const int to = place[axis] + sign;
+        if (to < 0 || to >= size[axis]) return NAN;
+        const FloatPixel& other = pixels[static_cast<int>(i) + sign * step[axis]];
+        return other.material == pixel.material ? static_cast<float>(sign) * (other.position[2] - pixel.position[2])
+                                                : NAN;
+      };
+      const float forward = difference(1);
+      const float backward = difference(-1);
+      float slope = std::fabs(forward) < std::fabs(backward) || std::isnan(backward) ? forward : backward;
+      if (std::isnan(slope) || forward * backward <= 0) slope = 0;
+      for (int j = 0; j < 2; ++j) {
+        const float ray = perspective ? pixel.position[j] / pixel.position[2] : 0;
+        tangents[axis][j] = ray * slope + (j == axis ? 1 / pixel.px_per_mm[j] : 0);
+      }
+      tangents[axis][2] = slope;
+    }
+    auto& [along_x, along_y] = tangents;
+    if (is_sheared(made_, options_)) {
+      const float shear = float_shear(along_x, along_y);
+      pixel.shear = static_cast<int>(std::lround(4096 * shear));
+      for (int j = 0; j < 3; ++j) along_y[j] += shear * along_x[j];
+    }
+    for (int axis = 0; axis < 2; ++axis) {
+      const auto& [x, y, z] = tangents[axis];
+      pixel.segment[axis] = pixel.covered * pixel.covered * std::sqrt(x * x + y * y + z * z);
+    }
+  }
+
+  const MadeFrame& made_;
+  std::span<const dermis::oracle::Material> materials_;
+  const dermis::Options& options_;
+};
