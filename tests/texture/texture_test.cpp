@@ -7,6 +7,7 @@
 
 #include "dermis/oracle/texture.hpp"
 #include "dermis/plan.hpp"
+#include "inputs/natural_picture.hpp"
 #include "support/catch.hpp"
 #include "support/guarded_image.hpp"
 #include "support/natural_pictures.hpp"
@@ -173,7 +174,7 @@ TEST_CASE("where texels are alike a texture is scattered as a card is", "[textur
   constexpr int side = 256;
   Texture texture{side, side, {}};
   texture.mm_per_texel = mm;
-  for (const double value : natural_picture(side, test_seed())) {
+  for (const double value : dermis::bench::natural_picture(side, test_seed())) {
     texture.light.insert(texture.light.end(), 3, static_cast<float>(value));
   }
   std::vector<float> flat(texture.light.size());
