@@ -102,7 +102,7 @@ MaterialTaps Plan::taps_of(std::size_t material, double pixel_mm) const {
   const Profile& profile = state_->settings.materials[material].profile;
   MaterialTaps result{.design = with_rank(profile, *state_->settings.materials[material].taps)};
   result.count = result.design.count;
-  const auto taps = cache_of(state_->device).taps.get({profile, result.design}, [&] {
+  const auto taps = cache_of(state_->settings.device).taps.get({profile, result.design}, [&] {
     return std::make_shared<const Taps>(make_taps(profile, result.design));
   });
   if (pixel_mm == 0) pixel_mm = taps->radius_mm / usual_radius_px;
