@@ -1,4 +1,5 @@
-/// All that is slow, done once: kernels built for what a frame holds, taps placed and uploaded.
+/// A plan does once all that is slow: it builds the kernels for the images that frames have, and places and uploads the
+/// taps.
 #pragma once
 
 #include <algorithm>
@@ -49,9 +50,9 @@ template <>
 inline constexpr std::array<Named<Method>, 3> word_table<Method> = {
     {{Method::separable, "separable"}, {Method::exact, "exact"}, {Method::disc, "disc"}}};
 
-/// Method::disc samples the surface integral (Golubev 2018). The distances of samples from a pixel are those within
-/// which even shares of the widest channel's light leave, their directions turn by the golden angle from each to the
-/// next, and by a random angle per pixel. A sample weighs R(distance on the surface) / density, times how much more
+/// Method::disc samples the surface integral on discs (Golubev 2018). The distances of samples from a pixel are those
+/// within which even shares of the widest channel's light leave, their directions turn by the golden angle from each to
+/// the next, and by a random angle per pixel. A sample weighs R(distance on the surface) / density, times how much more
 /// surface than disc there is under it, over the sum of weights; what lies on other materials is left out. The pixel's
 /// own light weighs as the profile integrated over its patch, and the samples share the light beyond.
 ///
@@ -74,7 +75,7 @@ struct DiscOptions {
   bool operator==(const DiscOptions&) const = default;
 };
 
-/// The quantity that Frame::light holds.
+/// The kind of light in Frame::light.
 enum class Lighting {
   raw,  ///< irradiance: the albedo is not in it
   lit,  ///< irradiance times albedo; where an albedo is below 1e-4 the irradiance counts as 0
@@ -84,10 +85,10 @@ template <>
 inline constexpr std::array<Named<Lighting>, 2> word_table<Lighting> = {
     {{Lighting::raw, "raw"}, {Lighting::lit, "lit"}}};
 
-/// The fate of a pixel whose light or albedo is not finite. It never gives light to another.
+/// The output of a pixel whose light or albedo is not finite. Such a pixel never gives light to another.
 enum class BadPixels {
-  keep,   ///< it is left as it is
-  zero,   ///< its outputs are 0
+  keep,   ///< the pixel is left as it is
+  zero,   ///< the outputs of the pixel are 0
   error,  ///< the run fails and writes nothing; not for enqueue
 };
 
@@ -153,18 +154,11 @@ struct FrameDescription {
   bool normal = false;
 
   /// The description of a frame.
-  static FrameDescription of(const Frame& frame) {
-    return {.depth = static_cast<bool>(frame.depth),
-            .material = static_cast<bool>(frame.material),
-            .mask = static_cast<bool>(frame.mask),
-            .albedo = static_cast<bool>(frame.albedo),
-            .matte = static_cast<bool>(frame.matte),
-            .normal = static_cast<bool>(frame.normal)};
-  }
+  static FrameDescription of(const Frame& frame);
   bool operator==(const FrameDescription&) const = default;
 };
 
-/// The fate of a tile.
+/// The way in which a run filtered or skipped a tile.
 enum class TileKind : std::uint8_t {
   without_material,  ///< skipped: no pixel has a material
   narrow,            ///< skipped: every kernel is narrower than half a pixel
@@ -187,19 +181,19 @@ inline constexpr std::array<Named<TileKind>, 8> word_table<TileKind> = {
      {TileKind::curved, "curved"},
      {TileKind::reused, "reused"}}};
 
-/// The fate of each tile, row by row.
+/// The tiles of a run.
 struct TileMap {
   int tile_width = 0;   ///< px
-  int tile_height = 0;  ///< px; fitted to what scatters and how far, unless the options say it
+  int tile_height = 0;  ///< px; fitted to the pixels that scatter and to their taps, unless the options give it
   int columns = 0;
   int rows = 0;
-  std::vector<TileKind> kinds;
+  std::vector<TileKind> kinds;  ///< row by row
 };
 
-/// The work of one run. Times are of the device, in milliseconds.
+/// Times and counts of one run. Times are those of the device, in milliseconds.
 struct Stats {
   double prepare_ms = 0;   ///< memory, images bound to the device
-  double classify_ms = 0;  ///< materials and shape of blocks
+  double classify_ms = 0;  ///< materials and classes of blocks
   double scatter_ms = 0;   ///< the passes, and all reading and writing of images that they do
   double finish_ms = 0;    ///< outputs that had to wait for the passes
   double total_ms = 0;     ///< wall clock, transfers included
@@ -241,8 +235,8 @@ class Event {
   cl_event event_;
 };
 
-/// One frame of a sequence leaves this for the next one: the light after scattering, 12 bytes per pixel, and a hash of
-/// the inputs of each 16 x 16 pixels. For one thread at a time.
+/// The data that one frame of a sequence leaves for the next one: the light after scattering, 12 bytes per pixel, and a
+/// hash of the inputs of each 16 x 16 pixels. For one thread at a time.
 class Reuse {
  public:
   Reuse();
@@ -275,13 +269,14 @@ class Plan {
   Stats run(const Frame& frame, const Progress& progress = {}) const;
 
   /// Filters the next frame of a sequence: tiles of which nothing within reach has changed since the last run with
-  /// `reuse` take the light of that run, with the same bits. All is computed if there was none, if it was of another
-  /// plan, size, camera or scale or failed, and always if the method is not separable or the device works pixel by
-  /// pixel. Bad pixels are counted, and refused, in tiles that are filtered.
+  /// `reuse` take the light of that run, with the same bits. All tiles are computed if there was no such run, if it was
+  /// of another plan, size, camera or scale or failed, and always if the method is not separable or the device works
+  /// pixel by pixel. Bad pixels are counted, and refused, in tiles that are filtered.
   Stats run(const Frame& frame, Reuse& reuse, const Progress& progress = {}) const;
 
-  /// Puts the same work on the caller's queue, which is of the plan's context and device, to start after the events in
-  /// `wait_for`. All images are buffers. Never blocks.
+  /// Puts the work of `run` on the caller's queue, which is of the plan's context and device, to start after the events
+  /// in `wait_for`. All images are buffers. Never blocks. Throws Error(usage) also if an image is in host memory, or if
+  /// bad pixels are to be errors.
   Event enqueue(const Frame& frame, cl_command_queue queue, std::span<const cl_event> wait_for = {}) const;
 
   /// The options with what a quality or a tolerance has made of them.

@@ -88,20 +88,21 @@ ChosenTaps choose_taps(std::vector<Material> materials, Options options) {
   return {std::move(materials), std::move(options), std::move(missed)};
 }
 
-const Options& Plan::options() const { return state_->options; }
+const Options& Plan::options() const { return state_->settings.options; }
 
 MaterialTaps Plan::taps_of(std::size_t material, double pixel_mm) const {
   constexpr double usual_radius_px = 64;
-  if (state_->options.method != Method::separable) {
-    throw Error(ErrorCode::usage, "method", name_of(state_->options.method), "separable, for the others have no taps");
+  if (state_->settings.options.method != Method::separable) {
+    throw Error(ErrorCode::usage, "method", name_of(state_->settings.options.method),
+                "separable, for the others have no taps");
   }
-  if (material >= state_->chosen.size()) {
+  if (material >= state_->settings.materials.size()) {
     throw Error(ErrorCode::usage, "material", std::to_string(material), "one of the plan, from 0");
   }
-  const Profile& profile = state_->chosen[material].profile;
-  MaterialTaps result{.design = with_rank(profile, *state_->chosen[material].taps)};
+  const Profile& profile = state_->settings.materials[material].profile;
+  MaterialTaps result{.design = with_rank(profile, *state_->settings.materials[material].taps)};
   result.count = result.design.count;
-  const auto taps = cache_of(state_->device).taps.get({profile, result.design}, [&] {
+  const auto taps = cache_of(state_->settings.device).taps.get({profile, result.design}, [&] {
     return std::make_shared<const Taps>(make_taps(profile, result.design));
   });
   if (pixel_mm == 0) pixel_mm = taps->radius_mm / usual_radius_px;

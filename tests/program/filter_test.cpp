@@ -239,7 +239,7 @@ TEST_CASE("methods are drawn side by side") {
   check_refused(run_program(lit), 2, {"--lighting"});
   check_refused(run_program(filter_arguments(scene, folder / "out.exr", {"--compare-methods", sheet})), 2,
                 {"--compare-methods"});
-  check_refused(run_program(arguments, "PATH='" + (folder / "nosuch") + "'"), 6, {"--output", "gnuplot"});
+  check_refused(run_program(arguments, {"PATH=" + (folder / "nosuch")}), 6, {"--output", "gnuplot"});
   if (std::system("command -v gnuplot >/dev/null 2>&1") != 0) return;
   Words with_other_size = arguments;
   make_scene(folder / "small.exr", "sphere", 20, 20, 3);

@@ -143,7 +143,7 @@ TEST_CASE("info needs no device") {
   const TemporaryFolder folder;
   make_scene(folder / "in.exr", "sphere", 20, 20, 4);
   const Outcome outcome =
-      run_program({"info", folder / "in.exr", "--json"}, "OCL_ICD_VENDORS='" + (folder / "nosuch") + "'");
+      run_program({"info", folder / "in.exr", "--json"}, {"OCL_ICD_VENDORS=" + (folder / "nosuch")});
   REQUIRE(outcome.exit_code == 0);
   CHECK(json::parse(outcome.output)["device_memory_bytes"].is_null());
 }
@@ -157,8 +157,7 @@ TEST_CASE("profiles are listed with their sources, and drawn") {
     CHECK(has(table, preset.source));
   }
   const TemporaryFolder folder;
-  const Outcome without =
-      run_program({"profiles", "--plot", folder / "plot.svg"}, "PATH='" + (folder / "nosuch") + "'");
+  const Outcome without = run_program({"profiles", "--plot", folder / "plot.svg"}, {"PATH=" + (folder / "nosuch")});
   check_refused(without, 6, {"--plot", "gnuplot"});
   if (std::system("command -v gnuplot >/dev/null 2>&1") != 0) return;
   const std::string quoted = folder / "it's a plot.svg";
