@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -15,6 +16,7 @@
 #include "dermis/frame.hpp"
 #include "dermis/profile.hpp"
 #include "dermis/taps.hpp"
+#include "dermis/words.hpp"
 
 struct _cl_command_queue;
 struct _cl_event;
@@ -28,6 +30,12 @@ struct Material {
   int id = 0;  ///< 0..65535; ignored if the frame has no material ids
   Profile profile;
   std::optional<TapsDesign> taps = {};  ///< in place of Options::taps
+  /// Size of a pixel on the surface, mm, at the median depth of its pixels: what taps with a tolerance are chosen for.
+  /// 1e-12..1e12; 0: not known, so that a kernel radius of 64 pixels is assumed.
+  double pixel_mm = 0;
+  /// The same at the nearest depth: no taps are placed for kernels that are wider there than twice their radius, which
+  /// saves time and changes no light. 0: not known.
+  double finest_pixel_mm = 0;
 
   bool operator==(const Material&) const = default;
 };
@@ -37,6 +45,10 @@ enum class Method {
   exact,      ///< the surface integral over all visible pixels of the material; slow
   disc,       ///< samples of that integral on a disc about each pixel, as DiscOptions says
 };
+
+template <>
+inline constexpr std::array<Named<Method>, 3> word_table<Method> = {
+    {{Method::separable, "separable"}, {Method::exact, "exact"}, {Method::disc, "disc"}}};
 
 /// Method::disc samples the surface integral on discs (Golubev 2018). The distances of samples from a pixel are those
 /// within which even shares of the widest channel's light leave, their directions turn by the golden angle from each to
@@ -69,6 +81,10 @@ enum class Lighting {
   lit,  ///< irradiance times albedo; where an albedo is below 1e-4 the irradiance counts as 0
 };
 
+template <>
+inline constexpr std::array<Named<Lighting>, 2> word_table<Lighting> = {
+    {{Lighting::raw, "raw"}, {Lighting::lit, "lit"}}};
+
 /// The output of a pixel whose light or albedo is not finite. Such a pixel never gives light to another.
 enum class BadPixels {
   keep,   ///< the pixel is left as it is
@@ -76,13 +92,23 @@ enum class BadPixels {
   error,  ///< the run fails and writes nothing; not for enqueue
 };
 
+template <>
+inline constexpr std::array<Named<BadPixels>, 3> word_table<BadPixels> = {
+    {{BadPixels::keep, "keep"}, {BadPixels::zero, "zero"}, {BadPixels::error, "error"}}};
+
+/// What a plan computes. With a quality or a tolerance, of which there is one at most and only with the separable
+/// method, every material gets as few taps as that takes: see choose_taps.
 struct Options {
   Method method = Method::separable;
-  TapsDesign taps = {.rank = 2};  ///< of every material that does not have its own
-  DiscOptions disc = {};          ///< of Method::disc, which has no taps
+  std::optional<Quality> quality = {};
+  /// Predicted error to be content with, below 1, as a number; if no taps are that good, the method is exact. 0: none.
+  double tolerance = 0;
+  /// Of every material that does not have its own. Of these, a quality or a tolerance takes neither rank nor count.
+  TapsDesign taps = {.rank = 2};
+  DiscOptions disc = {};  ///< of Method::disc, which has no taps
   /// The vertical pass crosses the horizontal one at a right angle on the surface instead of on the screen: see Taps.
   /// About half the error where a surface is tilted both ways, for up to twice the time of the blocks that are; it
-  /// counts only if there is depth, and no jitter.
+  /// counts only if there is depth, no jitter, and no quality or tolerance of 2 % and more.
   bool sheared = true;
   double jitter = 0;       ///< share of the kernel radius within which taps are rotated per pixel, 0..1
   std::uint32_t seed = 0;  ///< of the rotation, of taps or of discs
@@ -95,6 +121,26 @@ struct Options {
   int tile_height = 0;
 
   bool operator==(const Options&) const = default;
+};
+
+/// What becomes of materials and options with a quality, a tolerance or sizes of pixels.
+struct ChosenTaps {
+  std::vector<Material> materials;  ///< with designs of their own, and without sizes of pixels
+  Options options;                  ///< without a quality and a tolerance
+  std::vector<std::size_t> missed;  ///< the materials whose taps all miss the tolerance, and which have the best ones
+};
+
+/// The choice that Plan makes, so that its plan is that of the result. Quality::reference is the exact method. Any
+/// other quality and a tolerance take design_within(tolerance, taps) for materials without a design of their own. Where
+/// a design has a tolerance and Material::pixel_mm is known, choose_design decides about it. Throws Error(usage) for
+/// what is out of range or contradicts.
+ChosenTaps choose_taps(std::vector<Material> materials, Options options);
+
+/// The taps of a material for pixels of one size.
+struct MaterialTaps {
+  TapsDesign design;            ///< with its rank
+  int count = 0;                ///< per pass
+  double predicted_rel_l2 = 0;  ///< as TapSet::predicted_rel_l2
 };
 
 /// The images that the frames of a plan have. No code is built for what they do not have.
@@ -122,7 +168,17 @@ enum class TileKind : std::uint8_t {
   curved,            ///< filtered
   reused,            ///< skipped: nothing within reach has changed since the frame before
 };
-inline constexpr int tile_kinds = 8;
+
+template <>
+inline constexpr std::array<Named<TileKind>, 8> word_table<TileKind> = {
+    {{TileKind::without_material, "without_material"},
+     {TileKind::narrow, "narrow"},
+     {TileKind::unlit, "unlit"},
+     {TileKind::uniform, "uniform"},
+     {TileKind::flat, "flat"},
+     {TileKind::smooth, "smooth"},
+     {TileKind::curved, "curved"},
+     {TileKind::reused, "reused"}}};
 
 /// The tiles of a run.
 struct TileMap {
@@ -221,6 +277,13 @@ class Plan {
   /// in `wait_for`. All images are buffers. Never blocks. Throws Error(usage) also if an image is in host memory, or if
   /// bad pixels are to be errors.
   Event enqueue(const Frame& frame, cl_command_queue queue, std::span<const cl_event> wait_for = {}) const;
+
+  /// The options with what a quality or a tolerance has made of them.
+  const Options& options() const;
+
+  /// The taps of the material of this number, from 0, for pixels of this size; 0: for a kernel radius of 64 pixels.
+  /// Throws Error(usage) if the method has no taps, or there is no such material or size.
+  MaterialTaps taps_of(std::size_t material, double pixel_mm = 0) const;
 
   /// Bytes of device memory that a run needs beyond the images of the caller.
   std::size_t scratch_bytes(int width, int height) const;

@@ -5,6 +5,12 @@
 
 #pragma OPENCL FP_CONTRACT OFF
 
+// Without AVX-512, Clang warns at every call that passes 16 lanes: how they are passed depends on the processor's
+// features. Every call is within one program, and PoCL's built-in functions are compiled for the same processor.
+#ifdef __clang__
+#pragma clang diagnostic ignored "-Wpsabi"
+#endif
+
 // Such a function depends on an argument that is constant where it is called.
 #ifdef __OPTIMIZE__
 #define FORCED_INLINE static inline __attribute__((always_inline))

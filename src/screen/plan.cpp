@@ -93,7 +93,9 @@ Plan::Plan(const Device& device, std::vector<Material> materials, const FrameDes
   check_albedo_mix(frames, options);
   check_designs(materials, options);
   check_disc(options.disc);
-  auto state = std::make_unique<State>(PlanSettings{device, std::move(materials), frames, options});
+  ChosenTaps choice = choose_taps(std::move(materials), options);
+  auto state =
+      std::make_unique<State>(PlanSettings{device, std::move(choice.materials), frames, std::move(choice.options)});
   with_device_errors([&] {
     const PlanSettings& settings = state->settings;
     ScatterMethod& method = *state->method;
