@@ -57,7 +57,7 @@ std::vector<oracle::SliceMaterial> slice_materials(const std::vector<Material>& 
   return slices;
 }
 
-/// What a pixel shows more of its light shows in the beauty by the albedo.
+/// The beauty gains the albedo times what the light has gained.
 MethodPicture by_rule_2012(const std::vector<Material>& materials, const Frame& frame, const LoadedFrame& loaded,
                            std::vector<float> beauty) {
   constexpr int taps = 25;
