@@ -343,7 +343,7 @@ TEST_CASE("exported shader code has all the numbers of the taps") {
 TEST_CASE("the figure of taps has all its panels") {
   const TemporaryFolder folder;
   const Words call = {"taps", "skin", "--rank", "2", "--plot"};
-  check_refused(run_program(with(call, {folder / "plot.svg"}), "PATH='" + (folder / "nosuch") + "'"), 6,
+  check_refused(run_program(with(call, {folder / "plot.svg"}), {"PATH=" + (folder / "nosuch")}), 6,
                 {"--plot", "gnuplot"});
   CHECK(fs::is_empty(folder.path()));
   if (!is_installed("gnuplot")) return;

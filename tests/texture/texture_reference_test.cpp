@@ -1,4 +1,4 @@
-// The kernels of texture space against the oracle, within the bound that it derives from float rounding.
+// The kernels of texture space equal the oracle within the bound that it derives from float rounding.
 #include "dermis/oracle/texture.hpp"
 #include "inputs/half.hpp"
 #include "support/catch.hpp"
@@ -86,7 +86,7 @@ TEST_CASE("textures equal the oracle within float rounding", "[texture]") {
   }
   CHECK(tally.changed > tally.values / 20);
   CHECK(tally.empty > 20);
-  // Bounds are those of the worst case; roundings mostly cancel.
+  // Bounds are for the worst case; roundings mostly cancel.
   CHECK(std::sqrt(tally.squared_error / tally.squared) < 5e-6);
 }
 

@@ -11,19 +11,23 @@
 namespace dermis::program {
 
 struct PictureArguments {
-  std::string path;
   std::vector<std::string> roles;  ///< overrides
   std::string layer;
   exr::CameraHint camera;
   std::optional<double> mm_per_unit;
 };
 
-void add_picture_arguments(CLI::App& app, PictureArguments& arguments);
-
-/// Which channels to read.
+/// Adds --role and --layer.
 void add_role_arguments(CLI::App& app, PictureArguments& arguments);
 
-/// All but the path.
-void add_reading_arguments(CLI::App& app, PictureArguments& arguments);
+/// Adds --mm-per-unit.
+void add_scale_argument(CLI::App& app, PictureArguments& arguments);
+
+/// Adds --fov, --focal-px and --px-per-unit.
+void add_camera_arguments(CLI::App& app, exr::CameraHint& camera);
+
+/// What was asked for, as words of a command, with a space before each.
+std::string command_text(const exr::CameraHint& camera);
+std::string text_of_roles(const PictureArguments& arguments);
 
 }  // namespace dermis::program

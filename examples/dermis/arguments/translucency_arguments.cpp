@@ -1,4 +1,4 @@
-#include "commands/translucency_step.hpp"
+#include "arguments/translucency_arguments.hpp"
 
 #include <fmt/format.h>
 
@@ -6,12 +6,9 @@
 
 #include "arguments/number_argument.hpp"
 #include "dermis/error.hpp"
-#include "files/loaded_frame.hpp"
 
 namespace dermis::program {
 namespace {
-
-using exr::Role;
 
 CLI::Validator number_from_0(const char* what) {
   return real_number([](double value) { return value >= 0; }, fmt::format("{}, a finite number >= 0", what));
@@ -25,7 +22,8 @@ void add_translucency_arguments(CLI::App& app, TranslucencyArguments& arguments)
       "--translucency", arguments.wanted,
       "add light that comes through from behind before it is scattered: of --lights, through what their shadow "
       "maps or the thickness pass (mm) say, the larger one of both");
-  app.add_option("--lights", arguments.lights, "the lights of --translucency")->type_name("FILE.json");
+  app.add_option("--lights", arguments.lights, "the lights of --translucency, as `dermis light --help` describes them")
+      ->type_name("FILE.json");
   app.add_option("--thickness-shrink", options.shrink_units,
                  "how far below the surface a shadow map is looked up, scene units")
       ->check(number_from_0("scene units"))
@@ -37,7 +35,6 @@ void add_translucency_arguments(CLI::App& app, TranslucencyArguments& arguments)
                  "half the side of the square of a shadow map that is averaged over, texels; 0: the nearest one")
       ->check(real_number([](double value) { return value >= 0 && value <= 16; }, "a number from 0 to 16"))
       ->capture_default_str();
-  app.footer(app.get_footer() + "\n\n" + std::string(lights_grammar));
 }
 
 void check_translucency(const TranslucencyArguments& arguments) {
@@ -54,33 +51,6 @@ std::string command_text(const TranslucencyArguments& arguments) {
   return fmt::format(" --translucency --lights {} --thickness-shrink {} --thickness-scale {} --thickness-softness {}",
                      std::filesystem::path(arguments.lights).filename().string(), arguments.options.shrink_units,
                      arguments.options.thickness_scale, arguments.options.softness_texels);
-}
-
-TranslucencyImages load_translucency_images(const exr::Picture& picture, const exr::Roles& roles) {
-  for (const Role role : {Role::position, Role::normal, Role::albedo}) exr::require(picture, roles, role);
-  return {exr::load(picture, roles, Role::position), exr::load(picture, roles, Role::normal),
-          exr::load(picture, roles, Role::thickness)};
-}
-
-void add_transmitted_light(const Device& device, const std::vector<NamedProfile>& profiles, const LightsFile& lights,
-                           TranslucencyOptions options, const TranslucencyImages& images, const Frame& frame,
-                           std::vector<float>& light) {
-  const std::vector<Light> sources = lights.lights();
-  const TranslucencyFrame lit = {.width = frame.width,
-                                 .height = frame.height,
-                                 .light = frame.light,
-                                 .albedo = frame.albedo,
-                                 .position = image_of(images.position),
-                                 .normal = image_of(images.normal),
-                                 .material = frame.material,
-                                 .mask = frame.mask,
-                                 .thickness = image_of(images.thickness),
-                                 .beauty = frame.beauty,
-                                 .mm_per_unit = frame.mm_per_unit,
-                                 .lights = sources,
-                                 .lit = {.host = light.data()},
-                                 .result = frame.result};
-  Translucency(device, materials_of(profiles), lit.description(), options).run(lit);
 }
 
 }  // namespace dermis::program
