@@ -12,6 +12,7 @@
 #include "arguments/bad_pixels_argument.hpp"
 #include "arguments/device_arguments.hpp"
 #include "arguments/help.hpp"
+#include "arguments/number_argument.hpp"
 #include "arguments/word_argument.hpp"
 #include "commands/commands.hpp"
 #include "commands/surface_input.hpp"
