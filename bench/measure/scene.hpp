@@ -1,12 +1,14 @@
 // Frames to filter, in host memory: made scenes of any size, kernel width and coverage, or a picture.
 #pragma once
 
+#include <array>
 #include <compare>
 #include <filesystem>
 #include <string>
 #include <vector>
 
 #include "dermis/plan.hpp"
+#include "dermis/words.hpp"
 
 namespace dermis::bench {
 
@@ -15,6 +17,18 @@ enum class Geometry {
   flat,     ///< a plane parallel to the screen, orthographic
   picture,  ///< read from a file
 };
+
+}  // namespace dermis::bench
+
+namespace dermis {
+
+template <>
+inline constexpr std::array<Named<bench::Geometry>, 3> word_table<bench::Geometry> = {
+    {{bench::Geometry::spheres, "spheres"}, {bench::Geometry::flat, "flat"}, {bench::Geometry::picture, "picture"}}};
+
+}  // namespace dermis
+
+namespace dermis::bench {
 
 /// Names a scene.
 struct SceneSpec {
