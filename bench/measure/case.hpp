@@ -28,7 +28,7 @@ enum class Family {
   start_up,           ///< the first plan of a process
 };
 
-/// How the images of a caller lie in memory.
+/// The layout of a caller's images in memory.
 enum class Memory { planar_f32, interleaved_f16 };
 
 /// The part of the table that a case stands in.
@@ -88,7 +88,7 @@ struct Case {
   std::string method() const;  ///< the name up to the scene
   /// "dermis/optimised/r2/t17/spheres/1920x1080/w16/c100"; on a picture "optimised, rank 2, 17 taps".
   std::string name() const;
-  /// On a picture: the name of the curve that the case belongs to in a plot; empty if it is in none.
+  /// The curve that a case on a picture belongs to in a plot; empty if it is in none.
   std::string series() const;
 };
 

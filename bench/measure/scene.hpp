@@ -46,7 +46,7 @@ struct SceneSpec {
 /// The preset that made scenes have.
 const Profile& skin();
 
-/// Its largest standard deviation, mm: the root of 7.41 mm^2 (GPU Gems 3, ch. 14).
+/// The largest standard deviation of "skin", mm: the root of 7.41 mm^2 (GPU Gems 3, ch. 14).
 inline constexpr double skin_width_mm = 2.7221315177632398;
 
 struct Scene {
@@ -64,7 +64,7 @@ struct Scene {
 
   std::size_t pixels() const { return depth.size(); }
   bool is_background(std::size_t pixel) const { return depth[pixel] >= 1e9F; }
-  /// Where a value lies among the floats of the light.
+  /// The index of a value among the floats of the light.
   std::size_t at(std::size_t pixel, std::size_t channel) const {
     return (pixel * layout.pixel_stride + channel * layout.channel_stride) / sizeof(float);
   }
