@@ -13,7 +13,7 @@
 
 namespace dermis::bench {
 
-/// How long to measure, and on what.
+/// The device, the picture if there is one, and the time to spend.
 struct Setup {
   std::string device;                 ///< as for Device::open
   int threads = 0;                    ///< of cases that do not name their own; 0: all
