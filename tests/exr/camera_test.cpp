@@ -28,8 +28,8 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 using Vector = std::array<double, 3>;
-using Position = std::array<float, 3>;   // as the file holds it
-using Rotation = std::array<Vector, 3>;  // rows
+using Position = std::array<float, 3>;   ///< as the file holds it
+using Rotation = std::array<Vector, 3>;  ///< by rows
 
 Rotation random_rotation(Random& random) {
   std::array<double, 4> q;
@@ -44,7 +44,7 @@ Rotation random_rotation(Random& random) {
            {2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)}}};
 }
 
-/// A scene seen by a known camera: what lies where, and what the file then holds.
+/// A scene seen by a known camera, and what spoils the images that the file holds of it.
 struct Scene {
   int width = 96;
   int height = 64;
@@ -92,7 +92,7 @@ Picture picture_of(const Scene& scene) {
   return picture;
 }
 
-/// Hills and a ball, so that the points lie on no plane.
+/// Returns hills and a ball, so that the points lie on no plane.
 std::function<double(int, int)> relief(Random& random, double nearest) {
   const double a = random.uniform(0.05, 0.2);
   const double b = random.uniform(0.05, 0.2);
@@ -136,7 +136,7 @@ void require_near(const Camera& found, const Camera& expected, double relative) 
   }
 }
 
-/// Rounding to float32 moves a point by at most (|P| + z) 2^-24 or so: with |P| < 40, z > 1 and f < 600 px that
+/// Rounding to float32 moves a point by at most about (|P| + z) 2^-24. With |P| < 40, z > 1 and f < 600 px that
 /// is 1.5e-3 px on a picture of 48 px half width, times 1 / relief (about 10) in the worst case, by sqrt(6144 points)
 /// less on average.
 constexpr double tolerance = 1e-4;
@@ -153,7 +153,7 @@ TEST_CASE("a perspective camera is recovered from any pose, with any centre and 
     REQUIRE(found.residual_units >= 0);
     REQUIRE(found.residual_units < 1e-4);
     REQUIRE(found.eye);
-    // Of a depth of up to 20.
+    // The depth goes up to 20.
     for (std::size_t k = 0; k < 3; ++k) REQUIRE(std::abs((*found.eye)[k] - scene.eye[k]) < 20 * tolerance);
   }
 }
@@ -174,7 +174,7 @@ TEST_CASE("a scene far from the origin is as good as its positions") {
   Scene scene = random_scene(random, Camera::Projection::perspective);
   scene.camera = Camera::perspective(120, 120, 48, 32);
   scene.depth = relief(random, 200);
-  scene.eye = {1e6, -1e6, 1e6};  // a float there is a multiple of 1/16, a twentieth of a pixel at this depth
+  scene.eye = {1e6, -1e6, 1e6};  // Floats are multiples of 1/16 there, a twentieth of a pixel at this depth.
   const FoundCamera found = found_in(scene);
   require_near(found.camera, scene.camera, 2e-3);
   REQUIRE(found.residual_units > 0.01);
@@ -204,7 +204,7 @@ TEST_CASE("background and edge pixels do not bend the camera") {
     };
     const FoundCamera found = found_in(scene);
     require_near(found.camera, scene.camera, tolerance);
-    // What was spoilt is not counted: nothing is off by more than a pixel of the farthest depth.
+    // Spoilt pixels do not count: nothing is off by more than a pixel at the farthest depth.
     const double reach = projection == Camera::Projection::perspective ? 20 : 1;
     REQUIRE(found.residual_units < reach / std::sqrt(scene.camera.scale_x * scene.camera.scale_y));
   }
@@ -215,7 +215,7 @@ TEST_CASE("positions without depth give the camera and the depth") {
   for (int i = 0; i < 20; ++i) {
     const bool is_lens = i % 2 == 0;
     Scene scene = random_scene(random, is_lens ? Camera::Projection::perspective : Camera::Projection::orthographic);
-    // Nothing is seen at some pixels, and wrong things at others.
+    // Some pixels show nothing, and others wrong values.
     std::vector<bool> is_seen(static_cast<std::size_t>(scene.width * scene.height), true);
     scene.spoil = [&](int x, int y, float&, Position& position) {
       const int die = random.integer(0, 19);
@@ -234,7 +234,8 @@ TEST_CASE("positions without depth give the camera and the depth") {
     REQUIRE(found.source == "position");
 
     const std::vector<float> depth = dermis::exr::load_depth(picture, roles, found);
-    const double reach = is_lens ? 0 : scene.depth(0, 0) - depth[0];  // nothing tells where parallel rays begin
+    const double reach =
+        is_lens ? 0 : scene.depth(0, 0) - depth[0];  // Positions do not tell where parallel rays begin.
     for (std::size_t k = 0; k < depth.size(); ++k) {
       if (!is_seen[k]) continue;
       const double expected = scene.depth(static_cast<int>(k) % scene.width, static_cast<int>(k) / scene.width);
@@ -299,7 +300,7 @@ TEST_CASE("scenes that have no unique camera are refused") {
   REQUIRE(facing.says("--fov"));
 
   scene.camera = Camera::perspective(120, 120, 48, 32);
-  scene.depth = [](int x, int y) { return 5 / (1 + 0.002 * x - 0.003 * y); };  // a tilted plane
+  scene.depth = [](int x, int y) { return 5 / (1 + 0.002 * x - 0.003 * y); };  // This is a tilted plane.
   REQUIRE(failing(scene).code == ErrorCode::role_missing);
   scene.camera = Camera::orthographic(10, 10);
   scene.depth = [](int x, int y) { return 5 + 0.02 * x - 0.03 * y; };
@@ -325,7 +326,7 @@ TEST_CASE("positions that belong to no camera are refused, with how far off they
   REQUIRE(noise.code == ErrorCode::role_missing);
   REQUIRE(noise.says(" px in the median"));
 
-  // Distance along the ray is not depth.
+  // The distance along the ray is not the depth.
   scene = random_scene(random, Camera::Projection::perspective);
   scene.camera = Camera::perspective(80, 80, 48, 32);
   scene.spoil = [&](int x, int y, float& depth, Position&) {
@@ -333,7 +334,7 @@ TEST_CASE("positions that belong to no camera are refused, with how far off they
   };
   REQUIRE(failing(scene).code == ErrorCode::role_missing);
 
-  // Depth in another unit than the positions.
+  // The depth is in another unit than the positions.
   scene = random_scene(random, Camera::Projection::perspective);
   scene.spoil = [](int, int, float& depth, Position&) { depth *= 100; };
   REQUIRE(failing(scene).says("100 times"));
@@ -355,7 +356,7 @@ TEST_CASE("a hint gives the camera in pixels of the data window") {
   const FoundCamera fov = find_camera(blank, {}, {.fov_deg = 90});
   REQUIRE(fov.source == "--fov");
   REQUIRE(fov.camera.projection == Camera::Projection::perspective);
-  REQUIRE(fov.camera.scale_x == Approx(100));  // half the width over tan 45
+  REQUIRE(fov.camera.scale_x == Approx(100));  // It is half the width over tan 45.
   REQUIRE(fov.camera.scale_y == Approx(100));
   REQUIRE(fov.camera.center_x == 110 - 30);
   REQUIRE(fov.camera.center_y == 70 - -10);
@@ -375,7 +376,7 @@ TEST_CASE("a hint gives the camera in pixels of the data window") {
 TEST_CASE("pixels that are not square have two focal lengths") {
   const TemporaryFolder folder;
   OIIO::ImageSpec spec(20, 10, 1, OIIO::TypeHalf);
-  spec.attribute("PixelAspectRatio", 2.0F);  // twice as wide as high
+  spec.attribute("PixelAspectRatio", 2.0F);  // Pixels are twice as wide as high.
   const auto output = OIIO::ImageOutput::create("x.exr");
   const std::vector<float> values(200);
   REQUIRE(output->open(folder / "wide.exr", spec));

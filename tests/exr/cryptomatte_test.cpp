@@ -28,11 +28,11 @@ void fill(Picture& picture, const std::string& name, const std::vector<float>& v
 }  // namespace
 
 TEST_CASE("names have the ids that Cryptomatte gives them") {
-  // MurmurHash3 of these texts, as others compute it.
+  // Other programs compute this MurmurHash3 of the texts.
   CHECK(std::bit_cast<std::uint32_t>(cryptomatte_id("hello")) == 0x248BFA47U);
   CHECK(std::bit_cast<std::uint32_t>(cryptomatte_id("hello, world")) == 0x149BBB7FU);
   CHECK(std::bit_cast<std::uint32_t>(cryptomatte_id("The quick brown fox jumps over the lazy dog")) == 0x2E4FF723U);
-  CHECK(std::bit_cast<std::uint32_t>(cryptomatte_id("")) == 0x00800000U);  // 0 would be a denormal's exponent
+  CHECK(std::bit_cast<std::uint32_t>(cryptomatte_id("")) == 0x00800000U);  // An exponent of 0 would be a denormal's.
 }
 
 TEST_CASE("coverage adds up over ranks, and the name that covers most has the pixel") {

@@ -34,7 +34,7 @@ std::string random_bytes(Random& random, std::size_t count) {
   return out;
 }
 
-/// Channels of all formats with any bits: also NaNs with payloads, infinities and denormals.
+/// Returns channels of all formats with random bits, among them NaNs with payloads, infinities and denormals.
 std::vector<raw_exr::Channel> random_channels(Random& random, const Window& window) {
   std::vector<raw_exr::Channel> channels = {{"L.DiffDir.B", Format::f16, {}},  {"L.DiffDir.G", Format::f16, {}},
                                             {"L.DiffDir.R", Format::f16, {}},  {"L.Depth.Z", Format::f32, {}},
@@ -130,7 +130,7 @@ TEST_CASE("every bit of every channel comes back, in any format, size and window
     picture.write(folder / "out.exr", compression);
     require_channels(folder / "out.exr", file.channels);
     REQUIRE(spec_of(folder / "out.exr").get_string_attribute("compression") == compression);
-    // And once more, from compressed pixels.
+    // Compressed pixels are read and written again.
     Picture::read(folder / "out.exr").write(folder / "again.exr", "none");
     require_channels(folder / "again.exr", file.channels);
   }
@@ -406,7 +406,7 @@ TEST_CASE("sizes beyond the limits are refused before memory is taken") {
   REQUIRE(refused({0, 0, 0, 5}, "0 x 5"));
   REQUIRE(refused({0, 0, -9, 5}, "-9 x 5"));
   REQUIRE(refused({-2147483647, 0, 5, 5}, "dataWindow at"));
-  REQUIRE(refused({0, 0, 65536, 600}, ""));  // the table is there, the pixels are not
+  REQUIRE(refused({0, 0, 65536, 600}, ""));  // The table is there, the pixels are not.
 
   std::vector<raw_exr::Channel> many;
   for (int i = 0; i < 1025; ++i) {

@@ -1,5 +1,5 @@
-// OpenEXR files written byte by byte, uncompressed, so that the tests share no code with what they test and can be
-// wrong on purpose.
+// Uncompressed OpenEXR files written byte by byte, so that tests share no code with the library, and files can be wrong
+// on purpose.
 #pragma once
 
 #include <bit>
@@ -35,18 +35,18 @@ inline std::string attribute(const std::string& name, const std::string& type, c
 struct Channel {
   std::string name;
   dermis::Format format;
-  std::string values;  // little-endian, row by row
+  std::string values;  ///< little-endian, row by row
   int sampling = 1;
 };
 
 struct File {
   dermis::exr::Window data;
   dermis::exr::Window display;
-  std::vector<Channel> channels;  // sorted by name, as the format wants it
-  std::string attributes = {};    // more of them
+  std::vector<Channel> channels;  ///< sorted by name, as the format wants them
+  std::string attributes = {};    ///< further ones
   std::uint32_t flags = 0;
   float pixel_aspect = 1;
-  std::string end = std::string(1, '\0');  // of the header
+  std::string end = std::string(1, '\0');  ///< of the header
 };
 
 inline std::string box(const dermis::exr::Window& w) {
@@ -83,7 +83,7 @@ inline std::string bytes(const File& file) {
   for (int y = 0; y < file.data.height; ++y) {
     const std::uint64_t offset = first + rows.size();
     out += u32(static_cast<std::uint32_t>(offset)) + u32(static_cast<std::uint32_t>(offset >> 32));
-    rows += (file.flags & 0x1000) != 0 ? i32(0) : "";  // the part
+    rows += (file.flags & 0x1000) != 0 ? i32(0) : "";  // This is the number of the part.
     rows += i32(file.data.y + y) + u32(static_cast<std::uint32_t>(row_bytes));
     for (const Channel& channel : file.channels) {
       const std::size_t n = dermis::bytes_of(channel.format) * static_cast<std::size_t>(file.data.width);

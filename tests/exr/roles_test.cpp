@@ -37,7 +37,7 @@ Names operator+(Names a, const Names& b) {
   return a;
 }
 
-/// What a Cycles view layer holds, by the names of one version.
+/// Returns the channels of a Cycles view layer, by the names of one version.
 Names view_layer(const std::string& layer, bool blender_5) {
   const auto pass = [&](const char* up_to_4, const char* from_5) {
     return layer + '.' + (blender_5 ? from_5 : up_to_4);

@@ -1,6 +1,7 @@
-// Diffuse light and highlights: against the oracle, where energy goes, and what must not change a bit.
+// Diffuse light and highlights equal the oracle, keep energy, and do not depend on how they are computed.
 #include "dermis/shading.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -60,6 +61,16 @@ struct Case {
     }
   }
 
+  /// Adds a light without shadows that what is level mirrors to the viewer, and makes the first lobe so wide that a
+  /// quarter of any wave of the surface shines.
+  void add_highlight(Random& random) {
+    const auto& [x, y, z] = viewer.place;
+    const double side = viewer.projection == Camera::Projection::perspective ? 1 : -1;  // a place, or where to
+    sources.push_back({Light{.direction = {side * x, side * y, -side * z}, .colour = {1, 1, 1}}, {}});
+    options.lobes.resize(std::max<std::size_t>(options.lobes.size(), 1));
+    options.lobes[0] = {random.uniform(0.3, 0.6), 0.25};
+  }
+
   ShadingFrame frame() {
     lights = all_of(sources);
     return {.width = width,
@@ -86,7 +97,7 @@ Outputs run(const Device& device, Case& its) {
   return outputs;
 }
 
-/// One point at the origin with its normal along z, under lights of these directions.
+/// One point at the origin, whose normal is along z.
 struct Point {
   double light, seen, specular;
 };
@@ -124,6 +135,7 @@ TEST_CASE("lit frames are those of the oracle", "[shading]") {
     constexpr std::pair<int, int> sizes[] = {{1, 1}, {43, 19}, {7, 5}};
     const auto [width, height] = sizes[salt % 3];
     Case its(random, width, height, random.coin());
+    if (width > 10) its.add_highlight(random);
     CAPTURE(test_seed(), salt);
     run(Device::open(), its);
     const auto expected = dermis::oracle::shade(its.frame(), its.options);
@@ -163,7 +175,7 @@ TEST_CASE("lit frames are those of the oracle", "[shading]") {
 }
 
 TEST_CASE("one lobe is that of the papers to 1e-5", "[shading]") {
-  // Double precision by hand: Beckmann, Schlick, Kelemen and Szirmay-Kalos.
+  // The formulas are those of Beckmann, Schlick, and Kelemen and Szirmay-Kalos, in double precision.
   Random random(890);
   double worst = 0;
   int shining = 0;
@@ -179,7 +191,7 @@ TEST_CASE("one lobe is that of the papers to 1e-5", "[shading]") {
       options.reflectance = f0;
       shading.emplace(Device::open(), options);
     }
-    // Half of the lights are near the mirrored view.
+    // Half of the lights lie near the mirrored view.
     const auto direction = [](double theta, double phi) {
       return std::array{std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)};
     };
@@ -214,10 +226,10 @@ TEST_CASE("one lobe is that of the papers to 1e-5", "[shading]") {
 }
 
 TEST_CASE("a white surface under white light from all sides is white", "[shading]") {
-  // Lights at the nodes of a grid over the hemisphere: the midpoint rule in the angle and around. Under a grazing view
-  // lobes are as narrow around as 2 m cos, which for 0.05 and 0.1 is 1.1 times the distance of two nodes.
+  // Lights lie at the nodes of a grid over the hemisphere, which is the midpoint rule in the angle and around. Under a
+  // grazing view lobes are as narrow around as 2 m cos, which for 0.05 and 0.1 is 1.1 times the distance of two nodes.
   constexpr int rings = 120;
-  constexpr int turns = 360;  // of one half, for the view is symmetric
+  constexpr int turns = 360;  // They cover one half, as the view is symmetric.
   constexpr double least_cosine = 0.1;
   constexpr double ring = std::numbers::pi / 2 / rings;
   std::vector<Light> lights;
@@ -226,7 +238,7 @@ TEST_CASE("a white surface under white light from all sides is white", "[shading
     const double solid_angle = std::sin(theta) * ring * 2 * std::numbers::pi / turns;
     for (int k = 0; k < turns; ++k) {
       const double phi = std::numbers::pi * (k + 0.5) / turns;
-      // Radiance 1: irradiance is the solid angle, of which the colour is 1 / pi.
+      // For a radiance of 1 the irradiance is the solid angle, and the colour is 1 / pi of it.
       const double colour = solid_angle / std::numbers::pi;
       lights.push_back(
           {.direction = {-std::sin(theta) * std::cos(phi), -std::sin(theta) * std::sin(phi), -std::cos(theta)},
@@ -237,7 +249,7 @@ TEST_CASE("a white surface under white light from all sides is white", "[shading
   ShadingOptions strong;
   strong.lobes = {{0.1, 0.5}, {0.4, 0.4}};
   strong.reflectance = 0.3;
-  // Points of a plane that an eye at (0, 0, 1) sees under angles of their own.
+  // The points lie on a plane, each seen under another angle by an eye at (0, 0, 1).
   constexpr int points = 16;
   std::vector<double> cosine;
   std::vector<float> position(3 * points);
@@ -264,7 +276,7 @@ TEST_CASE("a white surface under white light from all sides is white", "[shading
     double most = 0;
     for (int i = 0; i < points; ++i) {
       CAPTURE(cosine[i], beauty[3 * i], specular[3 * i]);
-      CHECK(beauty[3 * i] <= 1 + 1e-3);  // the midpoint rule, and a sum of 43200 roundings
+      CHECK(beauty[3 * i] <= 1 + 1e-3);  // This covers the midpoint rule and 43200 roundings.
       CHECK(beauty[3 * i] == Approx(1).epsilon(0.02));
       CHECK(specular[3 * i] == Approx(dermis::oracle::reflected_share(options, cosine[i])).epsilon(0.02));
       most = std::max(most, static_cast<double>(specular[3 * i]));
@@ -320,7 +332,7 @@ TEST_CASE("lit frames do not depend on how they are computed", "[shading]") {
     for (int y = 0; y < height; ++y) {
       for (int x = 0; x < width; ++x) {
         for (int c = 0; c < 3; ++c) {
-          // Where nothing is lit the output keeps what it has: the albedo here, 0 there.
+          // Where nothing is lit the output keeps its values, which are the albedo or 0.
           const bool is_lit = its.seen.get(x, y, c) != 0;
           if (is_lit) CHECK(albedo.bits(x, y, c) == its.seen.bits(x, y, c));
           changed += is_lit ? 1 : 0;

@@ -1,4 +1,4 @@
-// Light that comes through: against the oracle, what must not change a bit of it, and what is to be refused.
+// Transmitted light equals the oracle and does not depend on how it is computed, and bad calls are refused.
 #include "dermis/translucency.hpp"
 
 #include <cmath>
@@ -21,7 +21,7 @@ using dermis::TranslucencyOptions;
 
 namespace {
 
-/// A frame, lights, and the arguments that suit them.
+/// A frame, its lights, and the arguments for them.
 struct Case {
   int width, height;
   RandomSurface surface;
@@ -165,7 +165,7 @@ TEST_CASE("transmitted light is that of the oracle", "[translucency]") {
     CHECK(its.lit.guards_intact());
   }
   CHECK(touched > 80);
-  // A nearest texel may be the one beside it, and a point on the map's edge off it.
+  // Bounds are loose where float32 cannot tell which texel is nearest, or whether a point lies on the map.
   CAPTURE(loose, values, worst_bound);
   CHECK(loose < 0.02 * values);
 }
@@ -309,7 +309,7 @@ TEST_CASE("the light of two lights is the sum of each one's", "[translucency]") 
     for (int x = 0; x < width; ++x) {
       for (int c = 0; c < 3; ++c) {
         const double sum = each[0].get(x, y, c) + each[1].get(x, y, c);
-        // Three roundings of each: of the sum, and of the product with albedo before and after it.
+        // Each is rounded three times: in the sum, and in the products with albedo before and after it.
         CHECK(std::abs(both.get(x, y, c) - sum) <= 4 * 0x1p-24 * sum);
         lit += each[0].get(x, y, c) > 0 && each[1].get(x, y, c) > 0 ? 1 : 0;
       }
@@ -319,19 +319,19 @@ TEST_CASE("the light of two lights is the sum of each one's", "[translucency]") 
 }
 
 TEST_CASE("a slab lit from behind shows what its thickness lets through", "[translucency]") {
-  // The map of a directional light sees the back of a slab, the frame its front. Any tilt of slab and light.
+  // The map of a directional light sees the back of a slab, the frame its front. Slab and light are tilted at random.
   Random random(860);
   const Profile profile = dermis::preset("skin").profile;
   for (int i = 0; i < 6; ++i) {
     const double thickness_units = random.uniform(0.02, 0.3);
     const double mm_per_unit = random.uniform(2, 10);
     const double tilt = random.uniform(0, 1);
-    // The front is z = 0, seen from z > 0; light comes from below, where the back is z = -thickness.
+    // The front at z = 0 is seen from z > 0. Light comes from below, where the back lies at z = -thickness.
     const dermis::Light bare{.direction = {std::sin(tilt), 0, std::cos(tilt)},
                              .position = {-20 * std::sin(tilt), 0, -20 * std::cos(tilt)}};
     constexpr int texels = 512;
-    constexpr double half_units = 0.12;  // texels of 1/50 of the thinnest slab: T is not straight
-    // Depth of the back along the light, by the place of each texel: points x = right u + up v.
+    constexpr double half_units = 0.12;  // Texels are 1/50 of the thinnest slab, as T is not linear.
+    // Each texel holds the depth of the back along the light, at the point right u + up v of its plane.
     dermis::Light light = bare;
     light.map.width = light.map.height = texels;
     light.map.view_projection = orthographic_map(light.direction, light.position, half_units, 60);
@@ -342,7 +342,7 @@ TEST_CASE("a slab lit from behind shows what its thickness lets through", "[tran
       for (int u = 0; u < texels; ++u) {
         const double right = 2 * (u + 0.5) / texels - 1;
         const double up = 1 - 2 * (v + 0.5) / texels;
-        // The z of the point of the plane through the light's position that projects there.
+        // This is z of the point that projects there, on the plane through the light's position.
         const double z = light.position[2] + (m[2] * right + m[6] * up) * scale;
         depth[v * texels + u] = static_cast<float>((-thickness_units - z) / light.direction[2]);
       }
@@ -375,7 +375,7 @@ TEST_CASE("a slab lit from behind shows what its thickness lets through", "[tran
 }
 
 TEST_CASE("what a map does not show", "[translucency]") {
-  // One point at the origin, whose normal looks away from the light.
+  // The frame is one point at the origin, whose normal faces away from the light.
   const std::vector<float> position = {0, 0, 0};
   const std::vector<float> normal = {0, 0, 1};
   const std::vector<float> thickness_mm = {0.5F};
@@ -411,7 +411,7 @@ TEST_CASE("what a map does not show", "[translucency]") {
     CHECK(lit(false) == at(0));
     depth[0] = 9.75F;
     CHECK(lit(false) == at(0.25));
-    CHECK(lit(true) == at(0.5));  // the larger one
+    CHECK(lit(true) == at(0.5));  // The larger thickness counts.
     depth[0] = 9;
     CHECK(lit(true) == at(1));
   }

@@ -1,4 +1,4 @@
-// What comes through slabs, against quadrature, and the table of it.
+// The transmittance of slabs, and its table, agree with quadrature.
 #include <array>
 #include <cmath>
 #include <limits>
@@ -16,7 +16,7 @@ using dermis::Profile;
 
 namespace {
 
-/// Pixels lit from behind through these thicknesses, without any shadow map.
+/// Returns the light of pixels that are lit from behind through these thicknesses, without a shadow map.
 std::vector<std::array<float, 3>> transmitted(const Profile& profile, const std::vector<float>& thickness_mm) {
   const auto count = thickness_mm.size();
   const std::vector<float> dark(3 * count);
@@ -36,7 +36,7 @@ std::vector<std::array<float, 3>> transmitted(const Profile& profile, const std:
   return lit;
 }
 
-constexpr float from_behind = 0.3F + 1.0F;  ///< max(0.3 + dot(-N, L), 0) there
+constexpr float from_behind = 0.3F + 1.0F;  // This is max(0.3 + dot(-N, L), 0) for light from behind.
 
 }  // namespace
 
@@ -48,8 +48,8 @@ TEST_CASE("what comes through a slab is the integral of the profile over its oth
       const Profile& profile = some.profile;
       CHECK(profile.transmittance(c, 0) == 1);
       CHECK(profile.transmittance(c, std::numeric_limits<double>::infinity()) == 0);
-      // R counts as 0 where 1e-9 of the light lies beyond, and the quadrature is good to 1e-8; across a kink of a table
-      // that it does not know, to 1e-5.
+      // R counts as 0 where 1e-9 of the light lies beyond. The quadrature is exact to 1e-8, and to 1e-5 across a kink
+      // of a table that it does not know.
       const double reach_mm = profile.radius(c, some.breaks.empty() ? 1 - 1e-9 : some.outermost_share());
       const double tolerance = some.breaks.empty() ? 1e-7 : 2e-4;
       for (int i = 0; i < 3; ++i) {
@@ -106,5 +106,5 @@ TEST_CASE("the table of T is 1 at 0, falls, and is within 1e-4 of quadrature", "
     CHECK(lit.back()[0] < 1e-5);
     CHECK(lit[lit.size() / 2][profile.widest_channel()] > 0.001);
   }
-  CHECK(worst > 1e-7);  // else it is no table that was looked at
+  CHECK(worst > 1e-7);  // Otherwise no table was read.
 }

@@ -17,7 +17,7 @@ using Texts = Recent<int, std::string>;
 
 std::size_t length(const std::string& text) { return text.size(); }
 
-/// A text of that length, and the number of texts made.
+/// Makes texts of a length, and counts them.
 struct Maker {
   Texts& texts;
   int made = 0;
@@ -46,15 +46,15 @@ TEST_CASE("the values that were asked for last are kept, up to a size", "[recent
   Maker maker{texts};
   maker.get(0, 4);
   maker.get(1, 4);
-  maker.get(0, 4);  // later than 1 now
-  maker.get(2, 4);  // 12 in all: 1 goes
+  maker.get(0, 4);  // It is later than 1 now.
+  maker.get(2, 4);  // There are 12 in all, so that 1 goes.
   CHECK(maker.made == 3);
   maker.get(0, 4);
   maker.get(2, 4);
   CHECK(maker.made == 3);
   maker.get(1, 4);
   CHECK(maker.made == 4);
-  maker.get(3, 11);  // is more than there is room for
+  maker.get(3, 11);  // It is more than there is room for.
   maker.get(3, 11);
   CHECK(maker.made == 6);
 }

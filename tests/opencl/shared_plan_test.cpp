@@ -23,7 +23,7 @@ constexpr int width = 61;
 constexpr int height = 43;
 constexpr std::size_t values = 3UL * width * height;
 
-/// A random picture, seen straight on from where a pixel is a sixth of a millimetre.
+/// Returns random light on pixels of a sixth of a millimetre.
 std::vector<float> random_light(unsigned salt) {
   Random random(salt);
   std::vector<float> light(values);
@@ -43,14 +43,14 @@ std::vector<float> run(const Plan& plan, const std::vector<float>& light) {
   return scattered;
 }
 
-/// Equal to every other one, and not a copy of it.
+/// Returns a profile that equals every other one, but is no copy of it.
 Profile made_anew() { return Profile::burley({1.5, 0.5, 0.25}); }
 
 Plan plan_of(const Device& device, const Profile& profile, int count) {
   return Plan(device, {{.profile = profile}}, {}, {.taps = {.rank = 2, .count = count}});
 }
 
-/// The taps that a device has for a design; `made` is counted if it has none.
+/// Returns the taps that a device keeps for a design; `made` counts those that it has to make.
 const dermis::Taps* kept_taps(const Device& device, const Profile& profile, int count, int& made) {
   const dermis::TapsDesign design{.rank = 2, .count = count};
   return dermis::cache_of(device)
@@ -76,7 +76,7 @@ TEST_CASE("equal plans share what they are made of, and give the same bits", "[p
   CHECK(run(plan_of(copy, made_anew(), 9), light) == first);
   CHECK(kept_taps(copy, made_anew(), 9, made) == taps);
   CHECK(made == 0);
-  // A device of its own makes its own.
+  // Another device makes taps of its own.
   const Device other = Device::open();
   CHECK(run(plan_of(other, made_anew(), 9), light) == first);
   CHECK(kept_taps(other, made_anew(), 9, made) != taps);
@@ -92,7 +92,7 @@ TEST_CASE("plans of other profiles, designs and options share nothing that diffe
   kept_taps(device, other, 9, made);
   kept_taps(device, made_anew(), 11, made);
   CHECK(made == 2);
-  // The same as on a device that never made the first.
+  // The results are those of a device that never made the first.
   const Device fresh = Device::open();
   const std::vector<float> of_other = run(plan_of(device, other, 9), light);
   CHECK(of_other != first);

@@ -15,7 +15,7 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 const Rgb ones = {1, 1, 1};
 
-/// What is wrong with one value of three.
+/// Returns the message about one wrong value of three.
 const double bad_lengths[] = {0, -1, 0.9e-9, 1.1e9, 1e-310, infinity, NAN};
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Each kind of profile against its formula, written down again from the paper.
+// Each kind of profile agrees with its formula, written down again from the paper.
 #include <cmath>
 #include <numbers>
 
@@ -19,7 +19,7 @@ double gaussian(double x, double deviation) {
   return std::exp(-x * x / (2 * deviation * deviation)) / (std::sqrt(2 * pi) * deviation);
 }
 
-/// Light from inside that a surface of relative index eta turns back, at the angle with this cosine.
+/// Returns the share of light from inside that a surface of relative index eta reflects, at the angle with this cosine.
 double fresnel(double cosine, double eta) {
   const double sine = eta * std::sqrt(1 - cosine * cosine);
   if (sine >= 1) return 1;
@@ -79,7 +79,7 @@ TEST_CASE("the artist's profile has the marginal of two Gaussians", "[profile]")
 }
 
 TEST_CASE("the dipole is Jensen's", "[profile]") {
-  // eq. 4 and section 2.1 with skin1, red, before it is scaled to unit integral: ratios do not know the scale
+  // This is eq. 4 and section 2.1 with skin1, red. Ratios do not depend on the scale to a unit integral.
   const double scattering = .74;
   const double absorption = .032;
   const double eta = 1.3;
@@ -111,7 +111,7 @@ TEST_CASE("the better dipole is d'Eon's", "[profile]") {
   const double s = std::sqrt(absorption / diffusion);
   const double two_c1 = 2 * adaptive_integral([&](double m) { return fresnel(m, eta) * m; }, 0, 1, 1e-10);
   const double three_c2 = 3 * adaptive_integral([&](double m) { return fresnel(m, eta) * m * m; }, 0, 1, 1e-10);
-  // the paper's polynomials for the same integrals
+  // These are the paper's polynomials for the same integrals.
   CHECK(two_c1 ==
         Approx(-9.23372 + 22.2272 * 1.5 - 20.9292 * 2.25 + 10.2291 * 3.375 - 2.54396 * 5.0625 + 0.254913 * 7.59375)
             .epsilon(1e-3));
@@ -141,7 +141,7 @@ TEST_CASE("a table keeps its values, does not overshoot and is 0 beyond", "[prof
       {.5, {4, 0, 1e-8}}, {1, {4, 2, 0}}, {1.25, {1, 5, 0}}, {3, {0.9, 5, 0}}, {3.5, {0, 1, 1e-8}}};
   const Profile profile = Profile::tabulated(rows);
   for (int c = 0; c < 3; ++c) {
-    // on the scale of the first row that is not 0
+    // The scale is that of the first row that is not 0.
     const TableRow& known = c == 1 ? rows[1] : rows[0];
     const double scale = profile.radial(c, known.r_mm) / known.value[c];
     for (const TableRow& row : rows) {
@@ -169,7 +169,7 @@ TEST_CASE("the table of a smooth profile comes near to it", "[profile]") {
     rows.push_back({r, {7 * smooth.radial(0, r), smooth.radial(1, r), smooth.radial(2, r)}});
   }
   const Profile table = Profile::tabulated(rows);
-  // Fritsch and Carlson's slopes are of second order: the error of a row's spacing h is some h^2 R''.
+  // Fritsch and Carlson's slopes are of second order: rows that are h apart make an error of about h^2 R''.
   for (const double x : {0.0, 0.5, 1.5, 3.0}) {
     CHECK(table.radial(0, x) == Approx(smooth.radial(0, x)).epsilon(1e-3));
     CHECK(table.marginal(0, x) == Approx(smooth.marginal(0, x)).epsilon(1e-3));

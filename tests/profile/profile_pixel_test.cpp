@@ -1,4 +1,4 @@
-// Light on the pixels of a grid, against adaptive quadrature of R(r) or a(x) that shares nothing with the library.
+// Light on the pixels of a grid agrees with adaptive quadrature of R(r) or a(x), which shares nothing with the library.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -13,7 +13,7 @@ using dermis::Profile;
 
 namespace {
 
-/// The distance at which R(r) falls to `value`.
+/// Returns the distance at which R(r) falls to `value`.
 double distance_of(const Profile& profile, int channel, double value) {
   double far = profile.radius(channel, 0.5);
   while (profile.radial(channel, far) > value) far *= 1.1;
@@ -51,7 +51,7 @@ TEST_CASE("pixels of a grid hold their light", "[profile]") {
       const double scale = profile.half_width(c, 0.6);
       const int rounds = is_preset(name) ? 1 : 6;
       for (int round = 0; round < rounds; ++round) {
-        // the ends of the range in the first rounds, which are the worst
+        // The first rounds take the ends of the range, which are the worst.
         const double size = round == 0   ? scale / 40
                             : round == 1 ? scale * 20
                                          : scale * std::exp(random.uniform(std::log(1.0 / 40), std::log(20.0)));
@@ -81,7 +81,7 @@ TEST_CASE("pixels of a grid hold their light", "[profile]") {
 }
 
 TEST_CASE("rectangles in every place hold their light", "[profile]") {
-  // thin ones, ones beside an axis, and ones of which a corner or a side touches the origin
+  // Some are thin, some lie beside an axis, and of some a corner or a side touches the origin.
   for (const SomeProfile& some : profiles_of_every_kind(112)) {
     const std::string& name = some.name;
     const Profile& profile = some.profile;

@@ -82,7 +82,7 @@ TEST_CASE("radius and half_width invert cdf and edge", "[profile]") {
       for (const double share : {1e-9, 1e-4, 0.3, 0.5, 0.9, 0.999999}) {
         CAPTURE(test_seed(), name, c, share);
         CHECK(profile.cdf(c, profile.radius(c, share)) == Approx(share).epsilon(1e-12));
-        // 1 - 2 edge_tail is good to 1e-16 absolutely
+        // 1 - 2 edge_tail has an absolute error of 1e-16.
         const double x = profile.half_width(c, share);
         CHECK(std::abs(1 - 2 * profile.edge_tail(c, x) - share) <= 1e-13 * share + 1e-15);
         CHECK(profile.strip(c, -x, x) == Approx(share).epsilon(1e-12).margin(1e-15));
@@ -126,7 +126,7 @@ TEST_CASE("a profile of lengths from 1e-6 to 1e6 mm is the same profile", "[prof
         for (const double share : {1e-6, 0.2, 0.9, 0.9999}) {
           const double r = one.radius(c, share);
           CHECK(large.radius(c, share) == Approx(k * r).epsilon(1e-11));
-          // 1 - 2 edge_tail is good to a few 1e-16 of 1, which is more of a small share
+          // 1 - 2 edge_tail has an absolute error of a few 1e-16, which is more of a small share.
           CHECK(large.half_width(c, share) == Approx(k * one.half_width(c, share)).epsilon(1e-11 + 4e-15 / share));
           CHECK(large.radial(c, k * r) == Approx(one.radial(c, r) / (k * k)).epsilon(1e-11));
           CHECK(large.marginal(c, k * r) == Approx(one.marginal(c, r) / k).epsilon(1e-11));

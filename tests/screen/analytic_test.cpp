@@ -40,7 +40,7 @@ struct FlatPicture {
   float scattered_at(int x, int y, int c) const { return scattered[(static_cast<std::size_t>(y) * width + x) * 3 + c]; }
 };
 
-/// The half-width, in pixels, of the strip around `center_px` that holds `share` of the values.
+/// Returns the half-width, in pixels, of the strip around `center_px` that holds `share` of the values.
 double half_width_px(const std::vector<double>& values, int center_px, double share) {
   const double total = std::accumulate(values.begin(), values.end(), 0.0);
   double inside = values[center_px];
@@ -51,7 +51,7 @@ double half_width_px(const std::vector<double>& values, int center_px, double sh
   }
 }
 
-/// Whether some material has terms that are no corrections: each scatters a part of the light, or takes it away.
+/// Returns whether a material has terms of either sign, each of which scatters a part of the light.
 bool has_terms_that_cancel(const RandomFrame& frame) {
   return std::any_of(frame.materials.begin(), frame.materials.end(), [&](const dermis::Material& material) {
     const dermis::TapsDesign& design = material.taps.value_or(frame.options.taps);
@@ -87,7 +87,7 @@ TEST_CASE("constant light stays constant on any geometry", "[analytic]") {
         }
       }
     }
-    // Terms that cancel round what is more than their sum.
+    // Terms that cancel are larger than their sum, and so is their rounding.
     CHECK(worst <= (has_terms_that_cancel(random_frame) ? 1e-5 : 2e-6));
   }
 }
@@ -104,7 +104,7 @@ TEST_CASE("the light of one pixel on a plane is kept", "[analytic]") {
         for (int x = 0; x < 193; ++x) total += picture.scattered_at(x, y, c);
       }
       CHECK(total == Approx(7).epsilon(1e-5));
-      CHECK(picture.scattered_at(96, 80, c) < 5);  // it did spread
+      CHECK(picture.scattered_at(96, 80, c) < 5);  // It did spread.
     }
   }
 }

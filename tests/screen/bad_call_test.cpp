@@ -1,4 +1,4 @@
-// Each bad call of the library: kind and message.
+// Each bad call of the library fails with the right kind and message.
 #include <cmath>
 
 #include "dermis/dermis.hpp"

@@ -17,7 +17,7 @@ namespace oracle = dermis::oracle;
 
 namespace {
 
-/// A frame whose options ask for some kind of disc.
+/// Sets random options of the disc method.
 void choose_discs(Random& random, RandomFrame& frame) {
   frame.options.method = dermis::Method::disc;
   frame.options.disc = {.samples = random.coin() ? 0 : random.integer(1, 40),
@@ -27,7 +27,7 @@ void choose_discs(Random& random, RandomFrame& frame) {
   for (dermis::Material& material : frame.materials) material.taps.reset();
 }
 
-/// Normals of any length, some of which are none or face away.
+/// Returns normals of any length, some of which are not finite or face away.
 GuardedImage random_normals(Random& random, int width, int height) {
   GuardedImage normals(width, height, 3, random.coin() ? dermis::Format::f32 : dermis::Format::f16, &random);
   for (int y = 0; y < height; ++y) {
@@ -64,8 +64,8 @@ TEST_CASE("discs equal the oracle within float rounding", "[disc][kernels]") {
     compare(random_frame, expected, tally);
   }
   INFO("worst error / bound " << tally.worst << ", " << tally.loose << " of " << tally.values << " bounds are loose");
-  CHECK(tally.changed > 1000);  // the filter did something
-  CHECK(tally.worst > 1e-3);    // the bound is of the order of the errors
-  // And it says something, but where float32 cannot tell which pixels a sample reads.
+  CHECK(tally.changed > 1000);  // The filter did something.
+  CHECK(tally.worst > 1e-3);    // The bound is of the order of the errors.
+  // Bounds are tight, but where float32 cannot tell which pixels a sample reads.
   CHECK(tally.loose < tally.values / 50);
 }

@@ -1,4 +1,4 @@
-// What discs are worth: how near they come to the integral that they sample, and what they must not do.
+// How near discs come to the integral that they sample, and what they must not do.
 #include <fftw3.h>
 
 #include <algorithm>
@@ -10,7 +10,9 @@
 #include "dermis/oracle/compare.hpp"
 #include "dermis/oracle/scenes.hpp"
 #include "dermis/plan.hpp"
+#include "inputs/natural_picture.hpp"
 #include "support/catch.hpp"
+#include "support/compare_light.hpp"
 #include "support/natural_pictures.hpp"
 #include "support/random_frame.hpp"
 
@@ -37,7 +39,7 @@ class NaturalCard {
  public:
   explicit NaturalCard(int side_px) : side_px_(side_px), whole_px_(side_px + 2 * margin_px) {
     for (int c = 0; c < 3; ++c) {
-      const std::vector<double> picture = natural_picture(side_px, 11 + static_cast<std::uint32_t>(c));
+      const std::vector<double> picture = dermis::bench::natural_picture(side_px, 11 + static_cast<std::uint32_t>(c));
       light_[c] = picture;
       truth_[c] = convolved(picture, c);
     }
@@ -70,12 +72,12 @@ class NaturalCard {
     return picture;
   }
 
-  /// Relative L2 distance of all channels together from the convolution with the profile on pixels.
+  /// Returns the relative L2 distance of all channels together from the convolution with the profile on pixels.
   double error_of(const oracle::Picture& picture) const { return oracle::compare(picture, of(truth_)).relative_l2; }
   double error_of(const Options& options) const { return error_of(filtered(options)); }
   double error_unfiltered() const { return error_of(of(light_)); }
 
-  /// How far the mean over the picture is from that of the light, as a share of it.
+  /// Returns how far the mean over the picture is from that of the light, relative to it.
   double change_of_mean(const oracle::Picture& picture) const {
     double change = 0;
     double total = 0;
@@ -90,7 +92,7 @@ class NaturalCard {
  private:
   using Channels = std::array<std::vector<double>, 3>;
   using Spectrum = std::vector<std::complex<double>>;
-  static constexpr int margin_px = 128;  ///< of the light of 128 samples none lies farther than 95 px
+  static constexpr int margin_px = 128;  ///< None of 128 samples lies farther than 95 px.
 
   std::size_t inside(int x, int y) const {
     const auto wrapped = [&](int i) { return (i % side_px_ + side_px_) % side_px_; };
@@ -110,7 +112,8 @@ class NaturalCard {
     fftw_destroy_plan(plan);
   }
 
-  /// With the profile on pixels; beyond 6 px what it is in their middles. The rest beyond 512 px is 1e-18.
+  /// Convolves a picture with the profile: its mean over each pixel up to 6 px, beyond them its value in the middle.
+  /// What lies beyond 512 px is 1e-18 of it.
   std::vector<double> convolved(const std::vector<double>& picture, int c) const {
     constexpr int near_px = 6;
     constexpr int far_px = 512;
@@ -213,17 +216,6 @@ std::vector<float> filtered(const oracle::Scene& scene, const Options& options, 
   return scattered;
 }
 
-double relative_l2(const std::vector<float>& a, const std::vector<float>& b) {
-  double errors = 0;
-  double squares = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    const auto off = static_cast<double>(a[i] - b[i]);
-    errors += off * off;
-    squares += static_cast<double>(b[i]) * static_cast<double>(b[i]);
-  }
-  return std::sqrt(errors / squares);
-}
-
 }  // namespace
 
 TEST_CASE("on surfaces too discs come ever closer to the exact integral", "[disc]") {
@@ -258,7 +250,7 @@ TEST_CASE("no material takes light of another through blocks of pixels or betwee
     const std::vector<float> scattered = filtered(scene, discs({.samples = 40, .prefiltered = prefiltered}));
     double changed = 0;
     for (std::size_t i = 0; i < scene.material.size(); ++i) {
-      // One is lit red, the other one blue.
+      // One material is lit red, the other one blue.
       const std::size_t dark = scene.light[3 * i] > 0 ? 2 : 0;
       REQUIRE(scene.light[3 * i + dark] == 0);
       REQUIRE(scattered[3 * i + dark] == 0);
@@ -284,7 +276,7 @@ TEST_CASE("a pixel whose light is not finite gives discs none", "[disc]") {
 
 namespace {
 
-/// A checkered card, 90 x 90, under skin.
+/// A checkered card of 90 x 90 pixels, made of skin.
 class CheckeredCard {
  public:
   explicit CheckeredCard(int samples) : plan_(Device::open(), {{.profile = skin_}}, {}, discs({.samples = samples})) {
@@ -293,7 +285,7 @@ class CheckeredCard {
     }
   }
 
-  /// At the scale at which the kernel has that radius.
+  /// Returns the light after scattering at the scale at which the kernel has that radius.
   std::vector<float> at(double radius_px) {
     std::vector<float> scattered(light_.size());
     const double px_per_mm = radius_px / skin_.half_width(skin_.widest_channel(), 0.999);
@@ -304,7 +296,7 @@ class CheckeredCard {
     return scattered;
   }
 
-  /// The largest change of the picture from one scale to the next, which is 2 % larger.
+  /// Returns the largest relative change of the picture from one scale to the next, which is 2 % larger.
   double largest_change(double from_px, double to_px) {
     constexpr double step = 1.02;
     double largest = 0;

@@ -1,9 +1,10 @@
-// The exact method against the oracle's surface integral.
+// The exact method equals the oracle's surface integral.
 #include "dermis/oracle/compare.hpp"
 #include "dermis/oracle/scenes.hpp"
 #include "dermis/plan.hpp"
 #include "opencl/device.hpp"
 #include "support/catch.hpp"
+#include "support/compare_light.hpp"
 #include "support/oracle_material.hpp"
 
 using dermis::Camera;
@@ -30,17 +31,15 @@ TEST_CASE("the exact method equals the surface integral on the analytic scenes",
       const oracle::Reference expected = oracle::surface_integral(frame, as_oracle, options);
       const auto stats = Plan(device, materials, FrameDescription::of(frame), options).run(frame);
 
-      oracle::Picture picture(scene.width, scene.height, 3);
-      picture.values.assign(scattered.begin(), scattered.end());
+      const oracle::Picture picture = picture_of(scene.width, scene.height, scattered);
+      const oracle::Picture before = picture_of(scene.width, scene.height, scene.light);
       const oracle::Difference difference = oracle::compare(picture, expected.scattered);
-      oracle::Picture before = picture;
-      before.values.assign(scene.light.begin(), scene.light.end());
       CAPTURE(info.name, static_cast<int>(projection), difference.max, difference.max_x, difference.max_y);
       CHECK(stats.pixels_scattered > 200);
       CHECK(difference.relative_l2 <= 1e-5);
       CHECK(difference.max <=
             1e-5 * *std::max_element(expected.scattered.values.begin(), expected.scattered.values.end()));
-      CHECK(oracle::compare(before, expected.scattered).relative_l2 > 1e-2);  // scattering did change the picture
+      CHECK(oracle::compare(before, expected.scattered).relative_l2 > 1e-2);  // Scattering did change the picture.
     }
   }
 }
@@ -71,11 +70,9 @@ TEST_CASE("separable comes near exact on a plane, and nearer with more taps", "[
     Frame frame = scene.frame();
     frame.scattered.host = scattered.data();
     Plan(device, materials, FrameDescription::of(frame), options).run(frame);
-    oracle::Picture picture(scene.width, scene.height, 3);
-    picture.values.assign(scattered.begin(), scattered.end());
-    return picture;
+    return picture_of(scene.width, scene.height, scattered);
   };
-  // Away from the frame's edges, where each method normalises what it sees of the plane in its own way.
+  // Pixels near the frame's edges do not count, as each method normalises there in its own way.
   oracle::Picture inside(scene.width, scene.height, 1);
   for (int y = 25; y < 35; ++y) {
     for (int x = 30; x < 90; ++x) inside(x, y) = 1;
@@ -92,5 +89,5 @@ TEST_CASE("separable comes near exact on a plane, and nearer with more taps", "[
   CAPTURE(error_7, error_25, error_63);
   CHECK(error_25 < error_7 / 3);
   CHECK(error_63 <= error_25);
-  CHECK(error_63 < 1e-3);  // a straight edge is what a pre-integrated kernel reproduces
+  CHECK(error_63 < 1e-3);  // Pre-integrated kernels reproduce straight edges.
 }

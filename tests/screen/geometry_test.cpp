@@ -23,7 +23,7 @@ using dermis::Plan;
 
 namespace {
 
-constexpr int dense = 401;  // taps on every pixel within reach
+constexpr int dense = 401;  // There is a tap on every pixel within reach.
 
 /// A scene under its true light, and which of its pixels count.
 struct Subject {
@@ -44,7 +44,7 @@ std::vector<float> filtered(const Subject& subject, const Options& options) {
   return scattered;
 }
 
-/// `farthest_mm`: what lies behind is not of the foreground.
+/// What lies farther away than `farthest_mm` does not count as foreground.
 Subject make_subject(const char* name, std::vector<Material> materials, double farthest_mm) {
   Subject subject{oracle::scene(name, 280, 250, 4), std::move(materials), {}, {}};
   const oracle::Scene& scene = subject.scene;
@@ -64,7 +64,7 @@ Subject make_subject(const char* name, std::vector<Material> materials, double f
   return subject;
 }
 
-/// Root mean square errors over the mean.
+/// Root mean square errors, relative to the mean of the true light.
 struct Errors {
   double foreground = 0;
   double tilted = 0;  ///< where the cosine between normal and view is 0.25..0.6
@@ -182,7 +182,7 @@ struct TiltedFrame {
 TEST_CASE("planes and bowls that are tilted both ways equal the oracle within float rounding", "[geometry][kernels]") {
   struct Case {
     double slope_x, slope_y, curvature;
-    const char* shape;
+    const char* block_class;
   };
   for (const Case& of : {Case{0.6, 0.7, 0, "flat"}, Case{-0.5, 1.2, 0, "flat"}, Case{0.5, 0.6, 0.012, "smooth"},
                          Case{0.8, -0.7, -0.012, "smooth"}, Case{1.5, 2.5, 0.2, "curved"}}) {
@@ -193,8 +193,8 @@ TEST_CASE("planes and bowls that are tilted both ways equal the oracle within fl
       options.sheared = sheared;
       const dermis::Stats stats =
           Plan(Device::open(), materials, FrameDescription::of(tilted.frame), options).run(tilted.frame);
-      const auto of_shape = std::string(of.shape) == "flat" ? stats.pixels_flat
-                            : std::string(of.shape) == "smooth"
+      const auto of_class = std::string(of.block_class) == "flat" ? stats.pixels_flat
+                            : std::string(of.block_class) == "smooth"
                                 ? stats.pixels_smooth
                                 : stats.pixels_scattered - stats.pixels_flat - stats.pixels_smooth;
       const auto expected = oracle::separable(tilted.frame, oracle_materials(materials, options.taps), options);
@@ -205,8 +205,9 @@ TEST_CASE("planes and bowls that are tilted both ways equal the oracle within fl
         worst = std::max(worst, off / expected.scattered_bound.values[i]);
         bound += expected.scattered_bound.values[i] / static_cast<double>(tilted.scattered.size());
       }
-      CAPTURE(of.shape, of.slope_x, of.slope_y, rank, sheared, stats.pixels_flat, stats.pixels_smooth, worst, bound);
-      CHECK(2 * of_shape > stats.pixels_scattered);
+      CAPTURE(of.block_class, of.slope_x, of.slope_y, rank, sheared, stats.pixels_flat, stats.pixels_smooth, worst,
+              bound);
+      CHECK(2 * of_class > stats.pixels_scattered);
       CHECK(worst <= 1);
       CHECK(bound < 1e-4);
     }

@@ -1,4 +1,4 @@
-// Every kernel of the separable method against the oracle over the same taps, on random frames, within the bound that
+// Every kernel of the separable method equals the oracle with the same taps, on random frames, within the bound that
 // the oracle derives from float rounding.
 #include "dermis/plan.hpp"
 #include "support/catch.hpp"
@@ -35,10 +35,10 @@ TEST_CASE("kernels equal the oracle within float rounding", "[kernels]") {
     compare(random_frame, expected, tally);
   }
   INFO("worst error / bound " << tally.worst << ", " << tally.loose << " of " << tally.values << " bounds are loose");
-  CHECK(tally.changed > 10000);  // the filter did something
-  CHECK(tally.worst > 1e-3);     // the bound is of the order of the errors
-  // And it says something, but where terms of high rank cancel, or where float32 cannot tell which column a tap of the
+  CHECK(tally.changed > 10000);  // The filter did something.
+  CHECK(tally.worst > 1e-3);     // The bound is of the order of the errors.
+  // Bounds are tight, but where terms of high rank cancel, or where float32 cannot tell which column a tap of the
   // vertical pass falls on, so that the bound admits both.
   CHECK(tally.loose < tally.values / 500);
-  CHECK(tally.largest_bound < 1);  // the weight of a tap times the range of the light
+  CHECK(tally.largest_bound < 1);  // It is the weight of a tap times the range of the light.
 }

@@ -7,6 +7,7 @@
 #include "dermis/oracle/scenes.hpp"
 #include "dermis/plan.hpp"
 #include "support/catch.hpp"
+#include "support/compare_light.hpp"
 #include "support/oracle_material.hpp"
 #include "support/random_frame.hpp"
 
@@ -60,7 +61,7 @@ struct Disc {
     return scattered;
   }
 
-  /// Largest distance from 1 of what the disc covers whole: light from behind it.
+  /// Returns how much light from behind the disc reaches pixels that it covers wholly: their largest distance from 1.
   double leak(const std::vector<float>& image) const {
     double most = 0;
     for (std::size_t i = 0; i < image.size(); ++i)
@@ -86,8 +87,8 @@ TEST_CASE("edges that a matte covers in part blend, and leak less than those tha
       const double after = by_matte[i];
       if (share == 0) CHECK(after == before);
       if (share == 0 || share == 1) continue;
-      CHECK(after >= 1 - 1e-5);  // never darker than the disc
-      // No more is taken away than the share.
+      CHECK(after >= 1 - 1e-5);  // The pixel is never darker than the disc.
+      // No more than the share that the disc covers loses light.
       CHECK(before - after <= share * (before - 1) + 1e-5);
       dimmed = std::max(dimmed, before - after);
     }
@@ -108,15 +109,13 @@ TEST_CASE("the exact method equals the surface integral where materials cover pi
   const Options options{.method = Method::exact};
   const auto filtered = [&] {
     Plan(Device::open(), materials, FrameDescription::of(frame), options).run(frame);
-    dermis::oracle::Picture picture(scene.width, scene.height, 3);
-    picture.values.assign(scattered.begin(), scattered.end());
-    return picture;
+    return picture_of(scene.width, scene.height, scattered);
   };
   const dermis::oracle::Picture without = filtered();
   frame.matte.host = matte.data();
   const auto expected =
       dermis::oracle::surface_integral(frame, oracle_materials(materials, options.taps), options).scattered;
-  // As without a matte: what the tables of the profile are worth.
+  // As without a matte, the error is that of the profile's tables.
   CHECK(dermis::oracle::compare(filtered(), expected).relative_l2 <= 1e-5);
   CHECK(dermis::oracle::compare(without, expected).relative_l2 > 1e-2);
 }

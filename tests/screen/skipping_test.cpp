@@ -1,4 +1,4 @@
-// What is not computed, how it is counted, and that it keeps its bits.
+// Pixels that are not scattered are counted, and keep their bits.
 #include <cmath>
 #include <cstring>
 
@@ -25,7 +25,8 @@ TEST_CASE("pixels without material and narrow kernels keep their bits and are co
   GuardedImage scattered(width, height, 3, Format::f32), depth(width, height, 1, Format::f32);
   GuardedImage material(width, height, 1, Format::f32);
   Random random(800);
-  // Left third: no material. Middle: far away, so that the kernel is below half a pixel. Right: scatters.
+  // The left third has no material, the middle is so far away that the kernel is below half a pixel, the right
+  // scatters.
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
       for (int c = 0; c < 3; ++c) {
@@ -37,7 +38,7 @@ TEST_CASE("pixels without material and narrow kernels keep their bits and are co
       material.set(x, y, 0, x < 64 ? 0 : 5);
     }
   }
-  beauty.set(3, 3, 1, NAN);  // a pixel that is not touched may hold anything
+  beauty.set(3, 3, 1, NAN);  // A pixel that is not touched may hold anything.
   light.set(150, 20, 0, NAN);
   light.set(160, 30, 2, INFINITY);
 
@@ -72,7 +73,7 @@ TEST_CASE("pixels without material and narrow kernels keep their bits and are co
           REQUIRE(result.bits(x, y, c) == beauty.bits(x, y, c));
           REQUIRE(scattered.bits(x, y, c) == light.bits(x, y, c));
         } else {
-          REQUIRE(std::isfinite(scattered.get(x, y, c)));  // what is not finite does not spread
+          REQUIRE(std::isfinite(scattered.get(x, y, c)));  // Light that is not finite does not spread.
           changed += result.bits(x, y, c) != beauty.bits(x, y, c) ? 1 : 0;
         }
       }
@@ -201,9 +202,9 @@ TEST_CASE("a channel that spreads less than half a pixel keeps its bits, and is 
   const dermis::TapsDesign design{.rank = 2, .count = 11};
   const dermis::Profile& skin = dermis::preset("skin").profile;
   const dermis::Taps taps = dermis::make_taps(skin, design);
-  constexpr int width = 80;  // whole blocks
+  constexpr int width = 80;  // All blocks are whole.
   constexpr int height = 41;
-  // Blue spreads 0.4 px, the others further.
+  // Blue spreads 0.4 px, the others farther.
   const double px_per_mm = 0.4 / (taps.radius_mm * static_cast<double>(taps.relative_width[2]));
   REQUIRE(taps.relative_width[1] > 1.3F * taps.relative_width[2]);
   Random random(820);

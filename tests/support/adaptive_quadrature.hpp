@@ -7,9 +7,9 @@
 #include <queue>
 #include <vector>
 
-/// The integral of f from `from` to `to` by the 15 points of Kronrod, halving where they differ most from the 7 of
-/// Gauss among them, until all differences together are below `relative` of the sum. `breaks` are where f has kinks or
-/// steps.
+/// Returns the integral of f from `from` to `to` by the 15 points of Kronrod. The piece where these differ most from
+/// the 7 of Gauss among them is halved, until all differences together are below `relative` of the sum. f may have
+/// kinks or steps at `breaks`.
 template <class Function>
 double adaptive_integral(const Function& f, double from, double to, double relative = 1e-11,
                          std::vector<double> breaks = {}) {
@@ -61,14 +61,14 @@ double adaptive_integral(const Function& f, double from, double to, double relat
     add(measure(worst.from, middle));
     add(measure(middle, worst.to));
   }
-  // Again in one go: the running sum has forgotten what large pieces took with them.
+  // The running sum has lost digits to large pieces, so that all pieces are added up again.
   double total = 0;
   for (; !pieces.empty(); pieces.pop()) total += pieces.top().value;
   return total;
 }
 
-/// The integral of radial(r) over the rectangle x0..x1 by y0..y1, ring by ring: radial may have a pole of order 1 at r
-/// = 0, kinks and steps.
+/// Returns the integral of radial(r) over the rectangle x0..x1 by y0..y1, ring by ring. radial may have a pole of order
+/// 1 at r = 0, kinks and steps.
 template <class Function>
 double adaptive_rings(const Function& radial, double x0, double x1, double y0, double y1,
                       const std::vector<double>& breaks = {}, double relative = 1e-11) {
@@ -87,7 +87,7 @@ double adaptive_rings(const Function& radial, double x0, double x1, double y0, d
     const double to = std::min(std::acos(std::min(1.0, x0 / r)), r > y1 ? std::asin(y1 / r) : std::acos(0.0));
     return r * std::max(0.0, to - from);
   };
-  // Where a ring begins or ceases to touch a side the arc goes like a square root: r = end +- t^2 takes that away.
+  // Where a ring begins or ceases to touch a side the arc behaves like a square root, which r = end +- t^2 takes away.
   std::vector<double> turns = breaks;
   turns.insert(turns.end(), {x0, x1, y0, y1});
   for (const double x : {x0, x1}) {
@@ -114,7 +114,7 @@ double adaptive_rings(const Function& radial, double x0, double x1, double y0, d
   return sum;
 }
 
-/// The same, row by row, for what is smooth but for a pole of order 1 at most at r = 0.
+/// Returns that integral row by row, for a radial that is smooth but for a pole of order 1 at most at r = 0.
 template <class Function>
 double adaptive_rectangle(const Function& radial, double x0, double x1, double y0, double y1, double relative = 1e-10) {
   const auto plain = [&](double a0, double a1, double b0, double b1) {

@@ -1,4 +1,4 @@
-// What a call throws.
+// The error that a call throws.
 #pragma once
 
 #include <optional>
@@ -7,7 +7,7 @@
 #include "dermis/error.hpp"
 
 struct Failure {
-  std::optional<dermis::ErrorCode> code;  // none if nothing was thrown
+  std::optional<dermis::ErrorCode> code;  ///< none if nothing was thrown
   std::string message;
 
   bool says(const std::string& part) const { return message.find(part) != std::string::npos; }

@@ -1,4 +1,4 @@
-// A plan's materials, as the oracle takes them.
+// The materials of a plan, as the oracle takes them.
 #pragma once
 
 #include <vector>

@@ -81,7 +81,7 @@ RandomFrame::RandomFrame(Random& random, const RandomFrameChoice& choice) : widt
     result.emplace(width, height, 3, color_format(), gaps);
   }
 
-  // A power of two, so that depth in mm has the bits of the input.
+  // With a power of two depth in mm has the mantissa of the input.
   mm_per_unit = std::ldexp(1.0, random.integer(-3, 4));
   const double depth_units = random.uniform(50, 200) / mm_per_unit;
   const double px_per_mm = std::exp(random.uniform(std::log(0.3), std::log(12)));
@@ -107,11 +107,11 @@ RandomFrame::RandomFrame(Random& random, const RandomFrameChoice& choice) : widt
         if (beauty) beauty->set(x, y, c, random.uniform(0, 4));
       }
       if (mask) mask->set(x, y, 0, random.integer(0, 9) == 0 ? 0 : random.uniform(0.3, 1));
-      // Covered in part along the edges of the light, and here and there.
+      // Pixels are covered in part along the edges of the light, and here and there.
       const bool partial = random.integer(0, 30) == 0 || (x % 9 == 0 && 2 * y < height);
       if (matte) matte->set(x, y, 0, partial ? random.uniform(0, 1) : 1);
       if (material) {
-        // The patches take turns; one in count + 1 belongs to nothing.
+        // The patches take turns; one in count + 1 has no material.
         const int turn = (x / patch_px + 2 * (y / patch_px)) % (count + 1);
         material->set(x, y, 0, turn == count ? 3 : materials[turn].id);
       }

@@ -7,7 +7,7 @@
 #include "dermis/plan.hpp"
 #include "support/guarded_image.hpp"
 
-/// What to leave out or to hold still.
+/// The properties of a random frame that a test sets.
 struct RandomFrameChoice {
   int width;
   int height;
@@ -17,7 +17,7 @@ struct RandomFrameChoice {
   std::optional<double> jitter = {};
 };
 
-/// A frame, the memory behind it, and a plan's arguments that suit it.
+/// A frame, its memory, and the arguments of a plan for it.
 struct RandomFrame {
   int width, height;
   std::vector<dermis::Material> materials;

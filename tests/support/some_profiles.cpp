@@ -10,7 +10,7 @@ using dermis::TableRow;
 
 namespace {
 
-/// Rows of a curve that rises and falls, or only falls; `cut` leaves it above 0 at the end.
+/// Returns rows of a curve that rises and falls, or only falls. A curve that is `cut` ends above 0.
 std::vector<TableRow> random_rows(Random& random, double mm, bool from_zero, bool cut) {
   std::vector<TableRow> rows;
   double r = from_zero ? 0 : random.uniform(0.02, 0.1);

@@ -1,6 +1,6 @@
-// How far taps are from the exact convolution, on pictures with the statistics of natural images, and whether they
-// know. W is the width of the kernel: the standard deviation of the widest Gaussian of the skin preset, that of the
-// widest channel along an axis (sqrt(7) d) of Burley's profile.
+// How far taps are from the exact convolution on pictures with the statistics of natural images, and how well they
+// predict it. W is the width of the kernel: the standard deviation of the widest Gaussian of the skin preset, that of
+// the widest channel along an axis (sqrt(7) d) of Burley's profile.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -40,7 +40,7 @@ struct Row {
   double bound;
 };
 
-/// Kernels and pictures, made once.
+/// Makes each kernel once.
 const ExactKernel& exact_kernel(const Profile& profile, double width_px) {
   static std::map<std::pair<const Profile*, double>, ExactKernel> kernels;
   const bool is_skin = &profile == &skin;
@@ -60,7 +60,7 @@ double pixel_mm(const Profile& profile, double width_px) {
 }  // namespace
 
 TEST_CASE("taps are as good as they should be on natural images", "[accuracy]") {
-  // Bounds are those of the published figures for the same tables, rounded up by a tenth or two.
+  // The bounds are the published figures for the same tables, rounded up by a tenth or two.
   const Row rows[] = {
       {skin, 4, fitted(2, dense), Fetch::integer, .003},     {skin, 16, fitted(2, dense), Fetch::integer, .003},
       {skin, 64, fitted(2, dense), Fetch::integer, .003},    {skin, 120, fitted(2, dense), Fetch::integer, .003},
@@ -107,7 +107,7 @@ TEST_CASE("every tap set knows its error", "[accuracy]") {
   for (const double width_px : {8.0, 16.0, 32.0, 64.0}) {
     for (const Profile* profile : {&skin, &burley}) {
       for (const TapsDesign& design : designs) {
-        if (random.integer(0, 2) > 0) continue;  // a third of them, others each time
+        if (random.integer(0, 2) > 0) continue;  // Each run tests another third of them.
         const Fetch fetch = random.coin() ? Fetch::linear : Fetch::integer;
         const TapSet taps = make_tap_set(*profile, design, pixel_mm(*profile, width_px), fetch);
         const double error = exact_kernel(*profile, width_px).rel_l2(taps, pictures());
@@ -170,7 +170,7 @@ TEST_CASE("a tilted edge, and light below zero", "[accuracy]") {
     double edge_bound;      // of the largest error at an edge at 30 degrees, of its height
     double negative_bound;  // of the light that the kernel takes away somewhere
   };
-  // Without the floor negative light is what it is; with it edges are a little less straight.
+  // Without the floor light may be negative; with it edges are a little less straight.
   for (const Case& what : {Case{skin, false, .005, .02}, Case{burley, false, .005, .04}, Case{skin, true, .01, .003},
                            Case{burley, true, .01, .008}}) {
     constexpr double width_px = 16;
@@ -180,7 +180,7 @@ TEST_CASE("a tilted edge, and light below zero", "[accuracy]") {
     const TapSet taps = make_tap_set(what.profile, design, pixel);
     const auto half = static_cast<int>(taps.offsets_px.size()) / 2;
     for (int c = 0; c < 3; ++c) {
-      // The kernels summed over pixels of equal distance from the edge, and along it, as shares of the light beyond.
+      // The kernels are summed over pixels of equal distance from the edge, as shares of the light beyond it.
       constexpr int reach_px = 100;
       std::vector<double> exact(2 * reach_px + 1);
       std::vector<double> approximate(2 * reach_px + 1);

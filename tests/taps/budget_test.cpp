@@ -8,9 +8,11 @@
 
 #include "dermis/plan.hpp"
 #include "dermis/tap_tables.hpp"
+#include "inputs/natural_picture.hpp"
 #include "support/catch.hpp"
 #include "support/natural_pictures.hpp"
 #include "support/random.hpp"
+#include "taps/card.hpp"
 
 using dermis::make_tap_set;
 using dermis::make_taps;
@@ -24,11 +26,11 @@ using dermis::with_rank;
 namespace {
 
 constexpr int levels_per_octave = 1 << Taps::log2_levels_per_octave;
-constexpr int levels_up_to_512_px = 10 * levels_per_octave;  // wider kernels have the taps of others, spread out
+constexpr int levels_up_to_512_px = 10 * levels_per_octave;  // Wider kernels have the taps of others, spread out.
 
 TapsDesign within(double tolerance, int rank = 0) { return {.rank = rank, .count = 33, .tolerance = tolerance}; }
 
-/// Channels up to a factor of 4 apart in width.
+/// Returns a profile whose channels are up to a factor of 4 apart in width.
 Profile random_profile(Random& random) {
   const double mm = std::exp(random.uniform(-3, 3));
   const auto channel = [&] { return mm * random.uniform(0.25, 1); };
@@ -42,7 +44,7 @@ int count_of(const TapLevel& level) { return 2 * static_cast<int>(level.offsets_
 
 int level_for(double radius_px) { return Taps::level_index(static_cast<float>(radius_px)); }
 
-/// The taps of a level as it has them on a flat block for the size of pixel that they were made for.
+/// Returns the taps of a level on a flat block whose pixels have the size that they were made for.
 TapSet set_of(const Taps& taps, const TapLevel& level) {
   const std::size_t pairs = level.offsets_px.size();
   const auto& weights = level.flat_weights[level.flat_weights.size() / 2];
@@ -62,58 +64,36 @@ TapSet set_of(const Taps& taps, const TapLevel& level) {
   return set;
 }
 
-/// Light of equal channels on a plane under an orthographic camera.
-struct Card {
-  int side_px;
-  double px_per_mm;
-  std::vector<double> light;
-
-  double at(int x, int y) const { return light[static_cast<std::size_t>(y) * side_px + x]; }
-
-  /// One value per pixel and channel.
-  std::vector<float> filtered(const dermis::Device& device, const Profile& profile, const TapsDesign& design) const {
-    std::vector<float> rgb, scattered(light.size() * 3);
-    for (const double value : light) rgb.insert(rgb.end(), 3, static_cast<float>(value));
-    dermis::Frame frame{.width = side_px,
-                        .height = side_px,
-                        .light = {.host = rgb.data()},
-                        .camera = dermis::Camera::orthographic(px_per_mm, px_per_mm)};
-    frame.scattered.host = scattered.data();
-    dermis::Plan(device, {{0, profile}}, dermis::FrameDescription::of(frame), {.taps = design}).run(frame);
-    return scattered;
-  }
-
-  /// The convolution with the profile on pixels, every `step` pixels and `margin_px` from the edges, which bounds how
-  /// far it looks; what lies farther away is made up for by what does not.
-  std::vector<double> convolved(const Profile& profile, int c, int margin_px, int step) const {
-    const double mm = 1 / px_per_mm;
-    const int reach_px = margin_px;
-    std::vector<double> kernel(static_cast<std::size_t>(reach_px + 1) * (reach_px + 1));
-    for (int y = 0; y <= reach_px; ++y) {
-      for (int x = 0; x <= y; ++x) {
-        kernel[static_cast<std::size_t>(y) * (reach_px + 1) + x] =
-            kernel[static_cast<std::size_t>(x) * (reach_px + 1) + y] =
-                profile.rectangle(c, (x - 0.5) * mm, (x + 0.5) * mm, (y - 0.5) * mm, (y + 0.5) * mm);
-      }
+/// Returns the convolution of a card with the profile on pixels, every `step` pixels and `margin_px` from the edges.
+/// The margin bounds the kernel; what lies beyond is made up for by the rest.
+std::vector<double> convolved(const Card& card, const Profile& profile, int c, int margin_px, int step) {
+  const double mm = 1 / card.px_per_mm;
+  const int reach_px = margin_px;
+  std::vector<double> kernel(static_cast<std::size_t>(reach_px + 1) * (reach_px + 1));
+  for (int y = 0; y <= reach_px; ++y) {
+    for (int x = 0; x <= y; ++x) {
+      kernel[static_cast<std::size_t>(y) * (reach_px + 1) + x] =
+          kernel[static_cast<std::size_t>(x) * (reach_px + 1) + y] =
+              profile.rectangle(c, (x - 0.5) * mm, (x + 0.5) * mm, (y - 0.5) * mm, (y + 0.5) * mm);
     }
-    std::vector<double> result;
-    for (int y = margin_px; y < side_px - margin_px; y += step) {
-      for (int x = margin_px; x < side_px - margin_px; x += step) {
-        double sum = 0;
-        double weights = 0;
-        for (int j = -reach_px; j <= reach_px; ++j) {
-          const double* row = &kernel[static_cast<std::size_t>(std::abs(j)) * (reach_px + 1)];
-          for (int i = -reach_px; i <= reach_px; ++i) {
-            sum += row[std::abs(i)] * at(x + i, y + j);
-            weights += row[std::abs(i)];
-          }
+  }
+  std::vector<double> result;
+  for (int y = margin_px; y < card.height - margin_px; y += step) {
+    for (int x = margin_px; x < card.width - margin_px; x += step) {
+      double sum = 0;
+      double weights = 0;
+      for (int j = -reach_px; j <= reach_px; ++j) {
+        const double* row = &kernel[static_cast<std::size_t>(std::abs(j)) * (reach_px + 1)];
+        for (int i = -reach_px; i <= reach_px; ++i) {
+          sum += row[std::abs(i)] * card.at(x + i, y + j);
+          weights += row[std::abs(i)];
         }
-        result.push_back(sum / weights);
       }
+      result.push_back(sum / weights);
     }
-    return result;
   }
-};
+  return result;
+}
 
 }  // namespace
 
@@ -156,14 +136,15 @@ TEST_CASE("a level has no more taps than the tolerance takes, and meets it", "[b
     const TapSet set = set_of(taps, level);
     const double error = ExactKernel(profile, set.pixel_mm, side_px).rel_l2(set, pictures);
     CAPTURE(test_seed(), round, radius_px, tolerance, design.rank, count_of(level), error);
-    // What is predicted is within a factor of 1.5 of the error on random pictures (see accuracy_test.cpp), and the
-    // levels of a quarter of an octave have the taps that the widest of them needs.
+    // Predictions are within a factor of 1.5 of the error on random pictures (see accuracy_test.cpp), and the levels of
+    // a quarter of an octave have the taps that the widest of them needs.
     CHECK(error <= 1.5 * tolerance);
-    // The levels of this count began where fewer were not enough. 3/2 for the search, which may find better taps for a
-    // single size than for one size after the other, most of all where kernels are but a few pixels wide.
+    // The levels of this count began where fewer were not enough. The factor of 3/2 is for the search, which may find
+    // better taps for a single size than for one size after the other, most of all where kernels are a few pixels wide.
     auto first = static_cast<std::size_t>(level_for(radius_px));
     while (first > 0 && count_of(taps.levels[first - 1]) == count_of(level)) --first;
-    if (first < levels_per_octave * 2 || count_of(level) <= 5) continue;  // on every pixel, or the fewest there are
+    if (first < levels_per_octave * 2 || count_of(level) <= 5)
+      continue;  // Taps lie on every pixel, or are the fewest possible.
     TapsDesign fewer = design;
     fewer.tolerance = 0;
     fewer.count = count_of(taps.levels[first - 1]);
@@ -180,12 +161,13 @@ TEST_CASE("the filter is as far off on a plane as a tolerance predicts, and with
     const Profile profile = random_profile(random);
     const double radius_px = random.uniform(12, 24);
     const double px_per_mm = radius_px / profile.half_width(profile.widest_channel(), 0.999);
-    const Card card{side_px, px_per_mm, natural_picture(side_px, test_seed() + 7 + static_cast<unsigned>(round))};
+    const Card card{side_px, side_px, px_per_mm,
+                    dermis::bench::natural_picture(side_px, test_seed() + 7 + static_cast<unsigned>(round))};
     // Beyond twice the radius lie some ten thousandths of the light.
     const int margin_px = 2 * static_cast<int>(radius_px);
-    constexpr int step = 5;  // the error is smooth: its neighbours say the same
+    constexpr int step = 5;  // The error is smooth, so that neighbours tell nothing new.
     std::array<std::vector<double>, 3> exact;
-    for (int c = 0; c < 3; ++c) exact[c] = card.convolved(profile, c, margin_px, step);
+    for (int c = 0; c < 3; ++c) exact[c] = convolved(card, profile, c, margin_px, step);
     int reads_before = std::numeric_limits<int>::max();
     for (const double tolerance : {0.006, 0.02, 0.06}) {
       const TapsDesign design = with_rank(profile, within(tolerance), 1 / px_per_mm);
@@ -194,7 +176,7 @@ TEST_CASE("the filter is as far off on a plane as a tolerance predicts, and with
       there.tolerance = 0;
       there.count = count_of(taps.levels[level_for(taps.radius_mm * px_per_mm)]);
       const double predicted = make_tap_set(profile, there, 1 / px_per_mm).predicted_rel_l2;
-      const std::vector<float> scattered = card.filtered(device, profile, design);
+      const std::vector<float> scattered = card.filtered(device, profile, {.taps = design});
       double errors = 0;
       double truths = 0;
       for (std::size_t c = 0; c < 3; ++c) {
@@ -214,7 +196,7 @@ TEST_CASE("the filter is as far off on a plane as a tolerance predicts, and with
       // Random pictures as a whole are within a factor of 1.5 (accuracy_test.cpp). This is a part of one: it holds
       // about (160 px / kernel width)^2 >= 40 patches whose errors do not depend on each other, so that their sum of
       // squares has a standard deviation of sqrt(2 / 40) = 0.22 of itself, and the root of it, three times out, is off
-      // by a factor of sqrt(1 + 3 * 0.22) = 1.3. Together 2. A thousandth is what lies between the sizes of two levels.
+      // by a factor of sqrt(1 + 3 * 0.22) = 1.3. Together they make 2. The sizes of two levels differ by a thousandth.
       CHECK(error <= 2 * predicted + 1e-3);
       CHECK(error >= predicted / 2 - 1e-3);
       CHECK(error <= 2 * tolerance);
@@ -248,16 +230,16 @@ TEST_CASE("a plan takes a design whose rank is left open", "[budget]") {
   const dermis::Device device = dermis::Device::open();
   Random random(904);
   const Profile profile = random_profile(random);
-  Card card{40, 10 / profile.half_width(profile.widest_channel(), 0.999), {}};
+  Card card{40, 40, 10 / profile.half_width(profile.widest_channel(), 0.999), {}};
   for (int i = 0; i < 40 * 40; ++i) card.light.push_back(random.uniform(0, 1));
   const TapsDesign open = within(std::exp(random.uniform(std::log(0.003), std::log(0.1))));
   const TapsDesign resolved = with_rank(profile, open);
   CAPTURE(test_seed(), open.tolerance, resolved.rank);
   REQUIRE(resolved.rank > 0);
-  CHECK(card.filtered(device, profile, open) == card.filtered(device, profile, resolved));
+  CHECK(card.filtered(device, profile, {.taps = open}) == card.filtered(device, profile, {.taps = resolved}));
   TapsDesign other = resolved;
   other.rank = resolved.rank == 1 ? 2 : 1;
-  CHECK(card.filtered(device, profile, open) != card.filtered(device, profile, other));
+  CHECK(card.filtered(device, profile, {.taps = open}) != card.filtered(device, profile, {.taps = other}));
 }
 
 TEST_CASE("a tolerance out of range is refused, and so is an open rank without one", "[budget]") {

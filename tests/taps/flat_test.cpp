@@ -5,9 +5,10 @@
 
 #include "dermis/plan.hpp"
 #include "dermis/tap_tables.hpp"
+#include "inputs/natural_picture.hpp"
 #include "support/catch.hpp"
-#include "support/natural_pictures.hpp"
 #include "support/random.hpp"
+#include "taps/card.hpp"
 
 using dermis::Camera;
 using dermis::Device;
@@ -23,27 +24,7 @@ using dermis::TapsDesign;
 
 namespace {
 
-/// Light of equal channels on a plane under an orthographic camera.
-struct Card {
-  int width, height;
-  double px_per_mm;
-  std::vector<double> light;
-
-  /// One value per pixel and channel.
-  std::vector<float> filtered(const Device& device, const Profile& profile, const Options& options) const {
-    std::vector<float> rgb, scattered(light.size() * 3);
-    for (const double value : light) rgb.insert(rgb.end(), 3, static_cast<float>(value));
-    Frame frame{.width = width,
-                .height = height,
-                .light = {.host = rgb.data()},
-                .camera = Camera::orthographic(px_per_mm, px_per_mm)};
-    frame.scattered.host = scattered.data();
-    Plan(device, {{0, profile}}, FrameDescription::of(frame), options).run(frame);
-    return scattered;
-  }
-};
-
-/// The weighted mean of a line with the light that falls on each pixel, what lies beyond its ends left out.
+/// Returns the mean of a line weighted by the light that falls on each pixel; what lies beyond its ends is left out.
 std::vector<double> spread(const std::vector<double>& line, const std::vector<double>& light_on_pixel) {
   std::vector<double> result;
   for (int x = 0; x < static_cast<int>(line.size()); ++x) {
@@ -63,8 +44,7 @@ std::vector<double> spread(const std::vector<double>& line, const std::vector<do
 }  // namespace
 
 TEST_CASE("the marginal does to additively separable light what the profile does", "[flat]") {
-  // Two dimensions with the light on squares against one with that on strips: the sum of the light on a column of
-  // squares is that on the strip.
+  // The light on a column of squares adds up to that on the strip.
   Random random(800);
   const double d = std::exp(random.uniform(-2, 2));
   const Profile profiles[] = {dermis::preset("skin").profile, Profile::burley({d, d, d}),
@@ -82,7 +62,7 @@ TEST_CASE("the marginal does to additively separable light what the profile does
       CAPTURE(test_seed(), i);
       CHECK(squares == Approx(strip).epsilon(1e-9).margin(1e-12));
     }
-    // A step, summed over strips, is the edge.
+    // The sum over strips is the edge.
     double left = 0;
     for (int i = -2000; i <= 3; ++i) left += profile.strip(0, (i - 0.5) * pixel, (i + 0.5) * pixel);
     CHECK(left == Approx(profile.edge(0, 3.5 * pixel)).margin(1e-12));
@@ -95,7 +75,7 @@ TEST_CASE("a device does to additively separable light what the marginal does", 
   const TapsDesign design{.model = Model::pre_integrated, .count = 127, .placement = Placement::importance};
   for (const char* name : {"skin", "marble", "dipole-skin1"}) {
     const Profile& profile = dermis::preset(name).profile;
-    // The size that the taps of a level were made for.
+    // The pixels have the size that the taps of a level were made for.
     const dermis::Taps taps = dermis::make_taps(profile, design);
     const dermis::TapLevel& level = taps.levels[dermis::Taps::level_index(static_cast<float>(random.uniform(4, 50)))];
     const double pixel_mm = 1 / static_cast<double>(level.px_per_mm);
@@ -103,7 +83,7 @@ TEST_CASE("a device does to additively separable light what the marginal does", 
     Card card{.width = 150, .height = 130, .px_per_mm = static_cast<double>(level.px_per_mm), .light = {}};
     std::vector<double> across(card.width), down(card.height);
     for (double& value : across) value = random.uniform(0, 1);
-    for (int x = 60; x < card.width; ++x) across[x] += 3;  // a step too
+    for (int x = 60; x < card.width; ++x) across[x] += 3;  // This adds a step.
     for (double& value : down) value = random.uniform(0, 2);
     for (int y = 0; y < card.height; ++y) {
       for (int x = 0; x < card.width; ++x) card.light.push_back(across[x] + down[y]);
@@ -112,7 +92,7 @@ TEST_CASE("a device does to additively separable light what the marginal does", 
     for (int c = 0; c < 3; ++c) {
       std::vector<double> light_on_pixel;
       for (int i = 0; i <= last_px; ++i) {
-        const double end = i == last_px ? HUGE_VAL : (i + 0.5) * pixel_mm;  // the last pixel has all that is left
+        const double end = i == last_px ? HUGE_VAL : (i + 0.5) * pixel_mm;  // The last pixel has all that is left.
         light_on_pixel.push_back(profile.strip(c, (i - 0.5) * pixel_mm, end));
       }
       const std::vector<double> expected_across = spread(across, light_on_pixel);
@@ -128,7 +108,7 @@ TEST_CASE("a device does to additively separable light what the marginal does", 
         }
       }
       CAPTURE(test_seed(), name, c, last_px);
-      // Flat weights are whole quanta of 2^-24, whatever the light.
+      // Flat weights are rounded to quanta of 2^-24, whatever the light.
       CHECK(worst <= 2e-6 * brightest);
     }
   }
@@ -158,7 +138,7 @@ TEST_CASE("the filter is as far from exact as its taps predict", "[flat]") {
     const Card card{.width = side_px,
                     .height = side_px,
                     .px_per_mm = px_per_mm,
-                    .light = natural_picture(side_px, test_seed() + 5)};
+                    .light = dermis::bench::natural_picture(side_px, test_seed() + 5)};
     const std::vector<float> exact = card.filtered(device, profile, {.method = Method::exact});
     for (const TapsDesign& design : designs) {
       const std::vector<float> scattered = card.filtered(device, profile, {.taps = design});
@@ -177,8 +157,8 @@ TEST_CASE("the filter is as far from exact as its taps predict", "[flat]") {
       const double predicted = dermis::make_tap_set(profile, design, 1 / px_per_mm).predicted_rel_l2;
       CAPTURE(test_seed(), name, px_per_mm, static_cast<int>(design.model), design.rank, design.count, error,
               predicted);
-      // One part of one picture is not the mean over all of them, and taps made for the next level are a few per cent
-      // too wide or narrow, which tells where little else is wrong.
+      // A part of one picture differs from the mean over all of them. Taps made for the next level are a few per cent
+      // too wide or narrow, which shows where the error is small.
       CHECK(error <= 2 * predicted + 2e-3);
       CHECK(error >= predicted / 3);
     }

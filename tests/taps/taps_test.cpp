@@ -1,11 +1,10 @@
-#include "dermis/tap_tables.hpp"
-
 #include <cmath>
 #include <limits>
 #include <numeric>
 #include <vector>
 
 #include "dermis/error.hpp"
+#include "dermis/tap_tables.hpp"
 #include "support/catch.hpp"
 #include "support/random.hpp"
 #include "taps/tables/radial_table.hpp"
@@ -20,7 +19,8 @@ using dermis::TapsDesign;
 
 namespace {
 
-/// Weights of one level on a plane parallel to the screen, as a pass has them: of the centre, then of each pair.
+/// Returns the weights of one level on a plane parallel to the screen, as a pass has them: the centre's, then the
+/// pairs'.
 std::vector<double> weights_of(const Taps& taps, const TapLevel& level, std::size_t term, int c) {
   const auto along = [&](std::size_t t, std::size_t pair) {
     return level.weights[pair * taps.terms.size() + t].length_mm[c] *
@@ -65,7 +65,7 @@ const TapsDesign some_designs[] = {
 TEST_CASE("every level holds all light in sorted, distinct whole-pixel taps", "[taps]") {
   Random random(200);
   const double d = std::exp(random.uniform(-10, 10));
-  // At this width the narrowest Gaussian rounds to a little less than nothing at a far tap.
+  // At this width the narrowest Gaussian rounds to a little less than 0 at a far tap.
   constexpr double vanishing = 0.0099031244;
   for (const Profile& profile : {dermis::preset("skin").profile, Profile::burley({d, d / 2, d / 5}),
                                  Profile::burley({vanishing, vanishing / 2, vanishing / 5})}) {
@@ -75,7 +75,7 @@ TEST_CASE("every level holds all light in sorted, distinct whole-pixel taps", "[
       REQUIRE(static_cast<int>(taps.terms.size()) == design.rank);
       CHECK(taps.terms[0].normalised);
       for (int c = 0; c < 3; ++c) {
-        // What a constant keeps: terms that are not normalised keep their sum, whatever the taps.
+        // Constant light stays constant, as terms that are not normalised keep their sum, whatever the taps.
         double kept = 0;
         for (const dermis::Term& term : taps.terms) {
           const double sum = term.normalised ? 1 : static_cast<double>(term.sum[c]);
@@ -116,8 +116,7 @@ TEST_CASE("on a plane the passes weigh as the tap set does", "[taps]") {
     for (const float radius_px : {5.3F, 31.0F, 90.0F}) {
       const TapLevel& level = taps.levels[Taps::level_index(radius_px)];
       const dermis::TapSet set = dermis::make_tap_set(profile, design, 1 / static_cast<double>(level.px_per_mm));
-      // The level table starts its search for taps at those of the next level, so that only what is not searched is the
-      // same.
+      // Levels start the search for taps at those of the next level, so that only taps without a search are the same.
       if (design.placement == Placement::optimised && radius_px > static_cast<float>(design.count / 2)) continue;
       const auto middle = static_cast<int>(set.offsets_px.size()) / 2;
       CAPTURE(static_cast<int>(design.model), design.count, radius_px);

@@ -6,7 +6,7 @@
 #include "dermis/texture.hpp"
 #include "support/guarded_image.hpp"
 
-/// What to leave out or to hold still.
+/// The properties of a random texture that a test sets.
 struct RandomTextureChoice {
   int width;
   int height;
@@ -17,7 +17,7 @@ struct RandomTextureChoice {
   std::optional<bool> albedo = {};
 };
 
-/// A texture, the memory behind it, and a plan's arguments that suit it.
+/// A texture, its memory, and the arguments of a plan for it.
 struct RandomTexture {
   int width, height;
   dermis::Profile profile;

@@ -1,4 +1,4 @@
-// Each bad call about textures: kind and message.
+// Each bad call about textures fails with the right kind and message.
 #include <cmath>
 
 #include "dermis/error.hpp"

@@ -1,4 +1,4 @@
-// What must not change a single bit of a scattered texture.
+// Ways of computing that must not change a single bit of a scattered texture.
 #include <cmath>
 #include <future>
 #include <utility>
@@ -18,7 +18,7 @@ namespace {
 constexpr int width = 157;
 constexpr int height = 89;
 
-/// Which NaN comes of another one as a half is left to the device.
+/// The device may turn a NaN into any other one when it converts to half.
 std::vector<std::uint32_t> bits_of(const GuardedImage& image) {
   std::vector<std::uint32_t> bits;
   for (int y = 0; y < height; ++y) {

@@ -1,5 +1,5 @@
-// What scattering in texture space promises: that it is the flat filter where texels are alike, that stretched layouts
-// agree, that seams are not seen, and what is skipped.
+// Scattering in texture space is the flat filter where texels are alike; stretched layouts agree, seams are not seen,
+// and what need not be computed is skipped.
 #include "dermis/texture.hpp"
 
 #include <cmath>
@@ -7,6 +7,7 @@
 
 #include "dermis/oracle/texture.hpp"
 #include "dermis/plan.hpp"
+#include "inputs/natural_picture.hpp"
 #include "support/catch.hpp"
 #include "support/guarded_image.hpp"
 #include "support/natural_pictures.hpp"
@@ -82,7 +83,7 @@ double relative_l2(const std::vector<float>& a, const std::vector<float>& b) {
   return std::sqrt(errors / squares);
 }
 
-/// What the plan makes of one lit texel in the middle, about the texel at 0.
+/// Returns what the plan makes of one lit texel in the middle, shifted so that the texel lies at 0.
 std::array<std::vector<double>, 3> kernel_of(const Profile& profile, TextureMethod method, double mm_per_texel,
                                              int side) {
   Texture texture{side, side, std::vector<float>(static_cast<std::size_t>(side) * side * 3)};
@@ -132,12 +133,12 @@ TEST_CASE("textures are as close to the exact convolution as they should be", "[
 TEST_CASE("of every kind of profile the poles are known to be as good as they are", "[texture][accuracy]") {
   Random random(1200);
   const std::vector<SomeProfile> profiles = profiles_of_every_kind(1201);
-  std::vector<std::size_t> measurable;  // by a plan, and soon
+  std::vector<std::size_t> measurable;  // A plan can follow these soon enough.
   for (std::size_t i = 0; i < profiles.size(); ++i) {
     if (profiles[i].breaks.empty() && !profiles[i].profile.width_follows_albedo()) measurable.push_back(i);
   }
   const std::size_t measured = measurable[random.integer(0, static_cast<int>(measurable.size()) - 1)];
-  const int table = random.integer(0, 2);  // they take longest
+  const int table = random.integer(0, 2);  // They take longest.
   int tables = 0;
   for (std::size_t i = 0; i < profiles.size(); ++i) {
     if (!profiles[i].breaks.empty() && tables++ != table) continue;
@@ -173,7 +174,7 @@ TEST_CASE("where texels are alike a texture is scattered as a card is", "[textur
   constexpr int side = 256;
   Texture texture{side, side, {}};
   texture.mm_per_texel = mm;
-  for (const double value : natural_picture(side, test_seed())) {
+  for (const double value : dermis::bench::natural_picture(side, test_seed())) {
     texture.light.insert(texture.light.end(), 3, static_cast<float>(value));
   }
   std::vector<float> flat(texture.light.size());
@@ -209,7 +210,8 @@ TEST_CASE("where texels are alike a texture is scattered as a card is", "[textur
 TEST_CASE("a layout that is stretched agrees with one that is not", "[texture]") {
   Random random(1220);
   const double mm = skin_width_mm / 8;
-  const double waves[] = {random.uniform(0.1, 0.5), random.uniform(0.1, 0.5), random.uniform(0.1, 0.5)};
+  // Radians per texel. Of waves this short the six Gaussians take enough that the light changes by 6 % at least.
+  const double waves[] = {random.uniform(0.25, 0.5), random.uniform(0.25, 0.5), random.uniform(0.25, 0.5)};
   // In texels of the square layout.
   const auto light_at = [&](double x, double y, int c) {
     return static_cast<float>(1 + 0.6 * std::sin(waves[c] * x) * std::cos(waves[(c + 1) % 3] * y) +
@@ -251,7 +253,8 @@ TEST_CASE("a layout that is stretched agrees with one that is not", "[texture]")
 }
 
 TEST_CASE("a card whose texels grow is scattered as far as the surface says", "[texture]") {
-  // Along u texels grow by half; light varies along u only. Against the profile's edge on the true distances.
+  // Texels grow by half along u, the only direction in which light varies. The truth is the profile's edge at the true
+  // distances.
   constexpr int width = 400;
   const double mm = skin_width_mm / 10;
   Texture texture{width, 8, {}};
@@ -273,9 +276,9 @@ TEST_CASE("a card whose texels grow is scattered as far as the surface says", "[
       worst = std::max(worst, std::abs(static_cast<double>(texture.scattered[texture.at(x, 3)]) - truth));
     }
     CAPTURE(static_cast<int>(method), worst);
-    // The taps take the stretch of their own texel for that of all, as the talk does. Recursion takes that of each, but
-    // its poles, which are as good as that on images, are off by most at an edge: 0.9 %. Without the stretches the
-    // kernel would be a quarter too wide, 3 %.
+    // The taps take the stretch of their own texel for that of all, as the talk does. Recursion takes that of each
+    // texel, but its poles, which are as good as that on images, are off by most at an edge: 0.9 %. Without the
+    // stretches the kernel would be a quarter too wide, 3 %.
     CHECK(worst < (method == TextureMethod::gaussians ? 0.01 : 0.012));
   }
 }
@@ -284,7 +287,7 @@ TEST_CASE("charts of an atlas keep their light, and have no dark seam", "[textur
   Random random(1230);
   constexpr int width = 150;
   constexpr int height = 110;
-  // A disc, a triangle, and a slanted stripe, at 1, 10 and 100.
+  // There are a disc, a triangle, and a slanted stripe, lit by 1, 10 and 100.
   const auto chart_at = [](int x, int y) {
     if (std::hypot(x - 40, y - 40) < 30) return 1;
     if (x > 80 && x < 140 && y > 10 && y - 10 < x - 80) return 2;
@@ -358,7 +361,7 @@ TEST_CASE("what has no object or no light is skipped", "[texture][skipping]") {
       CHECK(stats.parts_unlit >= height / 2 - 1);
       CHECK(stats.parts_unlit < stats.parts - stats.parts_empty);
     }
-    // As a light far off would change nothing, the same bits with all computed but for that light's own.
+    // A light far off changes nothing but its own surroundings, though all is computed.
     const std::vector<float> skipped = texture.scattered;
     for (int x = 0; x < width; x += 16) texture.light[texture.at(x, 155, 2)] = 1e-30F;
     texture.scatter(skin, method);
@@ -406,7 +409,7 @@ TEST_CASE("stretches come from positions", "[texture]") {
     for (int y = 0; y < height; ++y) {
       for (int x = 0; x < width; ++x) {
         const std::size_t at = static_cast<std::size_t>(y) * width + x;
-        // One rounding to float32.
+        // The mean is rounded to float32 once.
         CHECK(static_cast<double>(maps.u[at]) == Approx(expected(x, y, 0)).epsilon(1e-7));
         CHECK(static_cast<double>(maps.v[at]) == Approx(expected(x, y, 1)).epsilon(1e-7));
         sum += static_cast<double>(maps.u[at]);

@@ -1,4 +1,4 @@
-/// How far two images are apart.
+/// Measures of how far two images are apart.
 #pragma once
 
 #include <limits>
@@ -14,14 +14,14 @@ struct Difference {
   double rmse = 0;
   double psnr_db = std::numeric_limits<double>::infinity();  ///< against the largest |b|
   double max = 0;                                            ///< largest |a - b|
-  int max_x = 0, max_y = 0, max_channel = 0;                 ///< where
-  double max_a = 0, max_b = 0;                               ///< the two values there
+  int max_x = 0, max_y = 0, max_channel = 0;                 ///< where it occurs
+  double max_a = 0, max_b = 0;                               ///< the values of both there
 };
 
-/// Throws Error(usage) if the sizes differ.
+/// Compares all pixels. Throws Error(usage) if the sizes differ.
 Difference compare(const Picture& a, const Picture& b);
 
-/// The same over the pixels where `where` (1 channel) is not zero.
+/// Compares the pixels where `where` (1 channel) is not zero. Throws Error(usage) if the sizes differ.
 Difference compare(const Picture& a, const Picture& b, const Picture& where);
 
 }  // namespace dermis::oracle

@@ -1,4 +1,4 @@
-/// An image of doubles, the oracle's only kind.
+/// An image of doubles, the only kind that the oracle has.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-/// The filter again, in plain scalar double precision, to check the kernels against. Shares no code with them.
+/// The filter in plain scalar double precision, to check the kernels against. It shares no code with them.
 #pragma once
 
 #include <functional>
@@ -11,17 +11,17 @@
 
 namespace dermis::oracle {
 
-/// A material as the oracle needs it. `radial` and `cdf` are used by surface_integral and disc only; of `taps` they use
-/// only the radii, to tell which kernels are narrower than half a pixel.
+/// A material, as the oracle needs it. Only surface_integral and disc use `radial` and `cdf`; of `taps` they use only
+/// the radii, to find the kernels that are narrower than half a pixel.
 struct Material {
   int id = 0;
   bool width_follows_albedo = false;
   Taps taps;
   std::function<double(int channel, double r_mm)> radial;  ///< R(r), 1/mm^2
-  std::function<double(int channel, double r_mm)> cdf;     ///< share of the light within r
+  std::function<double(int channel, double r_mm)> cdf;     ///< share of the light within r, 0..1
 };
 
-/// What a filter should have written, and how far a float32 device may be off.
+/// The outputs that a filter should have written, and bounds on how far a float32 device may be off.
 struct Reference {
   Picture scattered;        ///< RGB, as Frame::scattered
   Picture scattered_bound;  ///< absolute, per value: rounding of a float32 device, derived per pixel
@@ -30,34 +30,34 @@ struct Reference {
   Picture touched;  ///< 1 channel: 1 where the filter scattered, 0 where it must leave the pixel alone
 };
 
-/// The same taps, summed pixel by pixel; see Taps. Where a pass has no taps for a pixel (level -1, or a pixel that
-/// gives light but takes none) each term is its sum at one point: 1 times what it reads if normalised, else Term::sum
-/// times it; but the second pass returns pixels that take none as they were. Pixels whose light or albedo is not finite
-/// belong to the surface (depths, slopes, levels and what is flat) but neither give nor take light. Reads the frame's
-/// host images. The bounds hold for outputs of float32: a caller that stores half adds half an ulp of that. Where
-/// float32 cannot tell which level a block has or whether it is flat, they admit every outcome.
+/// Sums the taps of the separable filter pixel by pixel; see Taps. Where a pass has no taps for a pixel (level -1, or a
+/// pixel that gives light but takes none) each term is its sum at one point: the light if normalised, else
+/// Term::sum times the light; but the vertical pass restores pixels that take none. Pixels whose light or albedo is
+/// not finite belong to the surface (they count for depths, slopes, levels and block classes) but neither give nor take
+/// light. Reads the frame's host images. The bounds hold for outputs of float32: a caller that stores half adds half an
+/// ulp of that. Where float32 cannot tell which level a block has or whether it is flat, they admit every outcome.
 Reference separable(const Frame& frame, std::span<const Material> materials, const Options& options);
 
-/// The surface integral over all visible pixels of the material,
+/// Computes the surface integral over all visible pixels of the material,
 ///     M(p) = sum_q R(|P_p - P_q|) E(q) A(q) / sum_q R(|P_p - P_q|) A(q),   A = |Tx x Ty|.
 /// Tx and Ty are the change of position per pixel. The change of depth in them is the smaller one of the differences to
-/// both neighbours of the same material; 0 if they differ in sign, that to the only neighbour if there is one, 0 if
-/// there is none. R is averaged over the tangent patch of q by Gauss-Legendre quadrature: 4 x 4 points if q is at most
-/// 2 pixels away on both axes, 2 x 2 up to 6, else the centre; the patch of p itself is integrated in polar form, (1 /
-/// 2 pi) of the integral of cdf(boundary) over the angle, by 8-point Gauss-Legendre on each edge. `finer` multiplies
-/// the number of quadrature points per axis, to show what they are worth. Leaves the bounds empty: what a device adds
-/// is not derived here, but set by the tables of R that it reads.
+/// both neighbours of the same material, or 0 if they differ in sign. With one neighbour it is the difference to that,
+/// and without any it is 0. R is averaged over the tangent patch of q by Gauss-Legendre quadrature: 4 x 4 points if q
+/// is at most 2 pixels away on both axes, 2 x 2 up to 6, else the centre; the patch of p itself is integrated in polar
+/// form, (1 / 2 pi) of the integral of cdf(boundary) over the angle, by 8-point Gauss-Legendre on each edge. `finer`
+/// multiplies the number of quadrature points per axis, to show what they are worth. Leaves the bounds empty: what a
+/// device adds is not derived here, but set by the tables of R that it reads.
 Reference surface_integral(const Frame& frame, std::span<const Material> materials, const Options& options,
                            int finer = 1);
 
-/// The same integral by samples on discs; see DiscOptions. Of n samples sample i has the distance r at which the share
-/// s/16 + (1 - s/16) (i + 1/2) / n of the widest channel's light has left, the direction i times the golden angle, and
-/// stands for the area a = (1 - s/16) / (n R(r)). s is the largest number below 16 for which the first sample, and half
-/// the root of its area, lie beyond the disc that fits into the pixel. Sample i weighs R(distance) a A / D, A and D
-/// being the areas of surface and of disc under a pixel there, and the pixel itself as in surface_integral; its shares
-/// of samples are left out. The bounds hold for a device that reads R and its cdf from tables that are linear in r^2
-/// between 256 nodes or more in each octave, and neglects R from the distance on within which all but 1e-6 leaves.
-/// Where float32 cannot tell which pixels a sample reads, they admit every outcome.
+/// Estimates that integral by samples on discs; see DiscOptions. Of n samples sample i has the distance r at which the
+/// share s/16 + (1 - s/16) (i + 1/2) / n of the widest channel's light has left, the direction i times the golden
+/// angle, and stands for the area a = (1 - s/16) / (n R(r)). s is the largest number below 16 for which the first
+/// sample, and half the root of its area, lie beyond the disc that fits into the pixel. Sample i weighs R(distance) a A
+/// / D, A and D being the areas of surface and of disc under a pixel there, and the pixel itself as in
+/// surface_integral; its shares of samples are left out. The bounds hold for a device that reads R and its cdf from
+/// tables that are linear in r^2 between 256 nodes or more in each octave, and neglects R from the distance on within
+/// which all but 1e-6 leaves. Where float32 cannot tell which pixels a sample reads, they admit every outcome.
 Reference disc(const Frame& frame, std::span<const Material> materials, const Options& options);
 
 }  // namespace dermis::oracle

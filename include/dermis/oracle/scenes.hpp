@@ -1,4 +1,4 @@
-/// Analytic G-buffers, for tests, for the benchmark and for trying things out.
+/// Analytic G-buffers, for tests, benchmarks and first steps.
 #pragma once
 
 #include <span>
@@ -11,7 +11,7 @@
 
 namespace dermis::oracle {
 
-/// A made G-buffer with one scene unit to the millimetre. Images are packed; material ids are 0 (none) to 3.
+/// A G-buffer whose scene unit is a millimetre. Images are packed; material ids are 0 (none) to 3.
 struct Scene {
   int width = 0;
   int height = 0;
@@ -24,7 +24,7 @@ struct Scene {
   std::vector<float> material;  ///< ids
   std::vector<float> beauty;    ///< RGB: light times albedo plus a grey highlight
 
-  /// Views of these images; the outputs are left to the caller.
+  /// Returns views of these images; the caller sets the outputs.
   Frame frame() const;
 };
 
@@ -33,30 +33,29 @@ struct SceneInfo {
   std::string what;
 };
 
-/// impulse (one lit pixel on a plane parallel to the screen), step (a vertical shadow edge on it), tilted (a plane at
-/// 60 degrees under a checkered light), sphere (over a background plane of no material, with a cast shadow), touching
-/// (two materials side by side on one plane, one lit red, the other blue), spheres (a small one over the edge of a
-/// large one, far before a bright plane, all of one material), head (bumpy, of three materials, with a thin ear before
-/// its cheek; by a lens of 90 degrees, the others by one of 28 or, of the spheres, 22).
+/// Returns all scenes: impulse (one lit pixel on a plane parallel to the screen), step (a vertical shadow edge on it),
+/// tilted (a plane at 60 degrees under a checkered light), sphere (over a background plane of no material, with a cast
+/// shadow), touching (two materials side by side on one plane, one lit red, the other blue), spheres (a small one over
+/// the edge of a large one, far before a bright plane, all of one material), head (bumpy, of three materials, with a
+/// thin ear before its cheek; by a lens of 90 degrees, the others by one of 28 or, of the spheres, 22).
 std::span<const SceneInfo> scenes();
 
-/// Makes a scene of that size. About `px_per_mm` pixels to the millimetre at its middle, seen by a perspective camera
-/// unless `projection` says otherwise. Throws Error(usage) that lists the names if there is no such scene, or if the
-/// size or scale is not positive.
+/// Makes a scene of that size, px, with about `px_per_mm` pixels to the millimetre in its middle. Throws Error(usage)
+/// that lists the names if there is no such scene, or if the size or scale is not positive.
 Scene scene(std::string_view name, int width, int height, double px_per_mm = 4,
             Camera::Projection projection = Camera::Projection::perspective);
 
-/// The light of a scene and what it sees.
+/// The light of a scene, and the depths that it sees.
 struct SceneLight {
   Light light;               ///< without the image of its map
   std::vector<float> depth;  ///< linear, mm; 1e10 where nothing is seen
 
-  /// The light with a view of these depths.
+  /// Returns the light, whose map points to these depths.
   Light with_map() const;
 };
 
-/// The directional light of the scene of that name and arguments, with a map of texels x texels around what casts its
-/// shadow: of "sphere" the sphere, not the bar. Throws Error(usage) for other scenes.
+/// Returns the directional light of the scene of that name and arguments, with a map of texels x texels around the
+/// shape that casts a shadow: the sphere of "sphere", but not its bar. Throws Error(usage) for other scenes.
 SceneLight scene_light(std::string_view name, int width, int height, double px_per_mm, Camera::Projection projection,
                        int texels);
 

@@ -41,17 +41,23 @@ void Blocks::Largest::add(Bounded value, bool counts, bool unsure) {
   if (counts || unsure) high_ = std::max(high_, value.high());
 }
 
+void Blocks::Relief::add(const Relief& other) {
+  depth_mm.add(other.depth_mm);
+  for (const Axis axis : {horizontal, vertical}) step_mm[axis].add(other.step_mm[axis]);
+  is_partial = is_partial || other.is_partial;
+}
+
 Blocks::Blocks(const Surface& surface, std::span<const Material> materials, bool may_be_flat)
     : surface_(surface),
       materials_(materials),
       may_be_flat_(may_be_flat),
-      columns_(blocks_over(surface.width())),
-      rows_(blocks_over(surface.height())),
-      blocks_(static_cast<std::size_t>(columns_) * rows_) {
-  for (int row = 0; row < rows_; ++row) {
-    for (int column = 0; column < columns_; ++column) {
-      Block& block = blocks_[static_cast<std::size_t>(row) * columns_ + column];
+      size_px_{surface.width(), surface.height()},
+      size_blocks_{blocks_over(surface.width()), blocks_over(surface.height())} {
+  for (int row = 0; row < rows(); ++row) {
+    for (int column = 0; column < columns(); ++column) {
+      Block block;
       for_each_pixel(column, row, [&](int x, int y) { add_pixel(block, x, y); });
+      blocks_.push_back(block);
     }
   }
 }
@@ -62,46 +68,37 @@ void Blocks::add_pixel(Block& block, int x, int y) const {
   if (pixel.wide) block.scatters.set(pixel.material);
   if (pixel.wide && !pixel.wide_unsure) block.surely_scatters.set(pixel.material);
   if (pixel.wide || pixel.wide_unsure) block.perhaps_scatters.set(pixel.material);
-  block.is_partial = block.is_partial || pixel.covered < 1;
-  block.depth_mm.add(pixel.position_mm[2]);
+  Relief& relief = block.relief;
+  relief.is_partial = relief.is_partial || pixel.covered < 1;
+  relief.depth_mm.add(pixel.position_mm[2]);
   for (const Axis axis : {horizontal, vertical}) {
     block.px_per_mm[axis].add(pixel.effective_px_per_mm[axis], pixel.wide, pixel.wide_unsure);
     const int next_x = axis == horizontal ? x + 1 : x;
     const int next_y = axis == vertical ? y + 1 : y;
     if (next_x / block_px != x / block_px || next_y / block_px != y / block_px) continue;
     if (!surface_.shows(pixel.material, next_x, next_y)) continue;
-    block.step_mm[axis].add(surface_.at(next_x, next_y).position_mm[2] - pixel.position_mm[2]);
+    relief.step_mm[axis].add(surface_.at(next_x, next_y).position_mm[2] - pixel.position_mm[2]);
   }
 }
 
-/// The blocks within reach.
+/// The surface that decides on the class of a block.
 struct Blocks::Surroundings {
-  Range depth_mm;
-  std::array<Range, 2> step_mm;
+  Relief relief;
   std::array<int, 2> size_px;  ///< columns and rows of pixels that lie in the frame
-  bool is_partial;
 };
 
-Blocks::Surroundings Blocks::surroundings(Axis axis, int column, int row, const Extent& extent) const {
-  std::array<int, 2> first{column, row};
-  std::array<int, 2> last{column, row};
-  const std::array<int, 2> frame_blocks{columns_, rows_};
+Blocks::Surroundings Blocks::surroundings(Axis axis, const Place& place, const Extent& extent) const {
+  Place first = place;
+  Place last = place;
+  Surroundings all{};
   for (const Axis i : {horizontal, vertical}) {
     const int reach_blocks = i == axis ? extent.along_blocks : extent.side_blocks;
     first[i] = std::max(first[i] - reach_blocks, 0);
-    last[i] = std::min(last[i] + reach_blocks, frame_blocks[i] - 1);
+    last[i] = std::min(last[i] + reach_blocks, size_blocks_[i] - 1);
+    all.size_px[i] = std::min(block_px * (last[i] + 1), size_px_[i]) - block_px * first[i];
   }
-  Surroundings all{};
-  for (int j = first[vertical]; j <= last[vertical]; ++j) {
-    for (int i = first[horizontal]; i <= last[horizontal]; ++i) {
-      all.depth_mm.add(at(i, j).depth_mm);
-      all.is_partial = all.is_partial || at(i, j).is_partial;
-      for (const Axis along : {horizontal, vertical}) all.step_mm[along].add(at(i, j).step_mm[along]);
-    }
-  }
-  const std::array<int, 2> frame_px{surface_.width(), surface_.height()};
-  for (const Axis along : {horizontal, vertical}) {
-    all.size_px[along] = std::min(block_px * (last[along] + 1), frame_px[along]) - block_px * first[along];
+  for (int row = first[vertical]; row <= last[vertical]; ++row) {
+    for (int column = first[horizontal]; column <= last[horizontal]; ++column) all.relief.add(at({column, row}).relief);
   }
   return all;
 }
@@ -117,65 +114,66 @@ Blocks::Decision Blocks::both(Decision a, Decision b) {
 
 /// How the position of the surface changes per pixel along a pass.
 struct Blocks::Variation {
-  Bounded squared_length;          ///< of T in the middle
-  Bounded squared_length_varying;  ///< of dT
+  Bounded squared_length;          ///< of T, the change in the middle of the ranges, mm^2
+  Bounded squared_length_varying;  ///< of dT, by which the change may differ from T, mm^2
 };
 
-Blocks::Variation Blocks::variation(Axis axis, int column, int row, const ShearChoice& shear, const Range& depth_mm,
-                                    const std::array<Range, 2>& step_mm) const {
+/// The rays are those through the middle of the block at `place`; `relief` may be that of its surroundings.
+Blocks::Variation Blocks::variation(Axis axis, const Place& place, const BoundedShear& shear,
+                                    const Relief& relief) const {
   const View& view = surface_.view();
-  const std::array<int, 2> corner_px{block_px * column, block_px * row};
   const Bounded side = shear.columns();
-  const Range& along_mm = step_mm[axis];
-  const Range& across_mm = step_mm[1 - axis];
+  const Range& along_mm = relief.step_mm[axis];
+  const Range& across_mm = relief.step_mm[1 - axis];
   const Bounded step = along_mm.middle() + side * across_mm.middle();
   const Bounded varying_step = along_mm.half_range() + absolute(side) * across_mm.half_range();
   Tangent change;   // T
   Tangent varying;  // dT
   for (const Axis i : {horizontal, vertical}) {
-    const Bounded ray = view.ray(i, corner_px[i] + block_px / 2.0);
+    const Bounded ray = view.ray(i, block_px * place[i] + block_px / 2.0);
     const Bounded pixels = i == axis ? exact(1) : side;
-    change[i] = ray * step + pixels * view.size_mm(i, depth_mm.middle());
-    varying[i] = absolute(ray) * varying_step + absolute(pixels) * view.growth_mm(i, depth_mm.half_range());
+    change[i] = ray * step + pixels * view.size_mm(i, relief.depth_mm.middle());
+    varying[i] = absolute(ray) * varying_step + absolute(pixels) * view.growth_mm(i, relief.depth_mm.half_range());
   }
   change[2] = step;
   varying[2] = varying_step;
   return {squared_length(change), squared_length(varying)};
 }
 
-/// In the middle of a block.
-ShearChoice Blocks::shear(int column, int row) const {
+/// Returns the shear in the middle of a block.
+BoundedShear Blocks::shear(const Place& place) const {
   if (!surface_.is_sheared()) return {};
-  const Block& block = at(column, row);
+  const Relief& relief = at(place).relief;
   const View& view = surface_.view();
-  const std::array<int, 2> corner_px{block_px * column, block_px * row};
   std::array<Tangent, 2> tangents;
   for (const Axis axis : {horizontal, vertical}) {
-    const Bounded step = block.step_mm[axis].middle();
+    const Bounded step = relief.step_mm[axis].middle();
     for (const Axis i : {horizontal, vertical}) {
-      tangents[axis][i] = view.ray(i, corner_px[i] + block_px / 2.0) * step;
-      if (i == axis) tangents[axis][i] = tangents[axis][i] + view.size_mm(i, block.depth_mm.middle());
+      tangents[axis][i] = view.ray(i, block_px * place[i] + block_px / 2.0) * step;
+      if (i == axis) tangents[axis][i] = tangents[axis][i] + view.size_mm(i, relief.depth_mm.middle());
     }
     tangents[axis][2] = step;
   }
   return whole_shear(shear_between(tangents[horizontal], tangents[vertical]));
 }
 
-void Blocks::add_kinds(Axis axis, int column, int row, const Extent& extent, std::vector<BlockClass>& kinds) const {
-  const Block& block = at(column, row);
-  const Surroundings near = surroundings(axis, column, row, extent);
-  if (near.is_partial) {
-    kinds.push_back({Shape::curved, block.px_per_mm[axis].bounded(), {}});
+void Blocks::add_passes(Axis axis, const Place& place, const Extent& extent, std::vector<BlockPass>& passes) const {
+  const Block& block = at(place);
+  const BlockPass curved{BlockClass::curved, block.px_per_mm[axis].bounded(), {}};
+  const Surroundings near = surroundings(axis, place, extent);
+  if (near.relief.is_partial) {
+    passes.push_back(curved);
     return;
   }
-  const Variation within_reach = variation(axis, column, row, extent.shear, near.depth_mm, near.step_mm);
+  const Variation within_reach = variation(axis, place, extent.shear, near.relief);
   const Bounded length = square_root(within_reach.squared_length);
   Bounded largest_range = length;
   for (const Axis i : {horizontal, vertical}) {
-    const Bounded steepest = absolute(near.step_mm[i].middle()) + near.step_mm[i].half_range();
+    const Range& step_mm = near.relief.step_mm[i];
+    const Bounded steepest = absolute(step_mm.middle()) + step_mm.half_range();
     largest_range = largest_range + exact(near.size_px[i]) * steepest;
   }
-  const Decision unbroken = is_at_most(exact(2) * near.depth_mm.half_range(), rounded(largest_range));
+  const Decision unbroken = is_at_most(exact(2) * near.relief.depth_mm.half_range(), rounded(largest_range));
   const auto varies_at_most = [&](double share) {
     return both(unbroken, is_at_most(within_reach.squared_length_varying,
                                      exact(share) * exact(share) * within_reach.squared_length));
@@ -183,31 +181,30 @@ void Blocks::add_kinds(Axis axis, int column, int row, const Extent& extent, std
   const Decision flat = varies_at_most(Taps::flatness);
   const Decision smooth = varies_at_most(Taps::smoothness);
 
-  const auto add = [&](Shape shape) {
-    switch (shape) {
-      case Shape::flat:
-        kinds.push_back({shape, exact(1) / length, extent.shear});
+  const auto add = [&](BlockClass block_class) {
+    switch (block_class) {
+      case BlockClass::flat:
+        passes.push_back({block_class, exact(1) / length, extent.shear});
         break;
-      case Shape::smooth:
-        kinds.push_back(
-            {shape,
-             exact(1) /
-                 square_root(variation(axis, column, row, extent.shear, block.depth_mm, block.step_mm).squared_length),
-             extent.shear});
+      case BlockClass::smooth: {
+        const Variation within_block = variation(axis, place, extent.shear, block.relief);
+        passes.push_back({block_class, exact(1) / square_root(within_block.squared_length), extent.shear});
         break;
-      case Shape::curved:
-        kinds.push_back({shape, block.px_per_mm[axis].bounded(), {}});
+      }
+      case BlockClass::curved:
+        passes.push_back(curved);
     }
   };
-  const Shape nominal = flat.yes ? Shape::flat : smooth.yes ? Shape::smooth : Shape::curved;
+  const BlockClass nominal = flat.yes ? BlockClass::flat : smooth.yes ? BlockClass::smooth : BlockClass::curved;
   const bool may_be_smooth = (smooth.yes || smooth.unsure) && (!flat.yes || flat.unsure);
   add(nominal);
-  if (flat.unsure && nominal != Shape::flat) add(Shape::flat);
-  if (may_be_smooth && nominal != Shape::smooth) add(Shape::smooth);
-  if (smooth.unsure && nominal != Shape::curved) add(Shape::curved);
+  if (flat.unsure && nominal != BlockClass::flat) add(BlockClass::flat);
+  if (may_be_smooth && nominal != BlockClass::smooth) add(BlockClass::smooth);
+  if (smooth.unsure && nominal != BlockClass::curved) add(BlockClass::curved);
 }
 
-/// An eighth more than the farthest tap of the materials that scatter, for the largest px_per_mm.
+/// The reach is 9/8 of the distance of the farthest tap of any material that scatters, at the block's largest
+/// px_per_mm.
 Blocks::Reach Blocks::reach(Axis axis, const Block& block) const {
   const Bounded px_per_mm = block.px_per_mm[axis].bounded();
   Reach reach{};
@@ -221,9 +218,9 @@ Blocks::Reach Blocks::reach(Axis axis, const Block& block) const {
     int least_px = std::numeric_limits<int>::max();
     for (int step = level_step(radius_px.low(), false, taps); step <= level_step(radius_px.high(), false, taps);
          ++step) {
-      const int its_px = farthest_px(step, taps);
-      least_px = std::min(least_px, its_px);
-      reach.most_px = std::max(reach.most_px, its_px);
+      const int step_px = farthest_px(step, taps);
+      least_px = std::min(least_px, step_px);
+      reach.most_px = std::max(reach.most_px, step_px);
     }
     if (block.surely_scatters[m]) reach.least_px = std::max(reach.least_px, least_px);
   }
@@ -231,20 +228,20 @@ Blocks::Reach Blocks::reach(Axis axis, const Block& block) const {
   return reach;
 }
 
-/// What lies within r pixels lies in the ceil(r / 16) blocks to either side.
-std::vector<Blocks::Extent> Blocks::extents(Axis axis, int column, int row) const {
-  const Reach reach_px = reach(axis, at(column, row));
-  const ShearChoice shears = axis == vertical ? shear(column, row) : ShearChoice{};
-  const int frame_px = std::max(surface_.width(), surface_.height());
+/// Pixels within a reach of r lie in the ceil(r / 16) blocks to either side.
+std::vector<Blocks::Extent> Blocks::extents(Axis axis, const Place& place) const {
+  const Reach reach_px = reach(axis, at(place));
+  const BoundedShear of_block = axis == vertical ? shear(place) : BoundedShear{};
+  const int longest_px = std::max(size_px_[horizontal], size_px_[vertical]);
   std::vector<Extent> all;
   const auto add = [&](const Extent& extent) {
     if (std::find(all.begin(), all.end(), extent) == all.end()) all.push_back(extent);
   };
   const auto add_sides = [&](int along_px) {
-    along_px = std::min(along_px, frame_px);
-    // A shear that moves no tap is none.
-    for (const int side : sides_px(shears.magnitude(), along_px)) {
-      add({blocks_over(along_px), blocks_over(side), side == 0 ? ShearChoice{} : shears});
+    along_px = std::min(along_px, longest_px);
+    // A shear that moves no tap counts as none.
+    for (const int side : sides_px(of_block.magnitude(), along_px)) {
+      add({blocks_over(along_px), blocks_over(side), side == 0 ? BoundedShear{} : of_block});
     }
   };
   add_sides(reach_px.nominal_px);
@@ -252,12 +249,12 @@ std::vector<Blocks::Extent> Blocks::extents(Axis axis, int column, int row) cons
   return all;
 }
 
-std::vector<BlockClass> Blocks::kinds(Axis axis, int column, int row) const {
-  const Block& block = at(column, row);
-  if (!may_be_flat_) return {{Shape::curved, block.px_per_mm[axis].bounded(), {}}};
-  std::vector<BlockClass> kinds;
-  for (const Extent& extent : extents(axis, column, row)) add_kinds(axis, column, row, extent, kinds);
-  return kinds;
+std::vector<BlockPass> Blocks::classify(Axis axis, int column, int row) const {
+  const Place place{column, row};
+  if (!may_be_flat_) return {{BlockClass::curved, at(place).px_per_mm[axis].bounded(), {}}};
+  std::vector<BlockPass> passes;
+  for (const Extent& extent : extents(axis, place)) add_passes(axis, place, extent, passes);
+  return passes;
 }
 
 }  // namespace dermis::oracle

@@ -1,4 +1,4 @@
-/// Blocks of 16 x 16 pixels: their shape, and what px_per_mm their levels are chosen by. See Taps.
+/// Blocks of 16 x 16 pixels: their class, and by how many pixels per mm their levels are chosen. See Taps.
 #pragma once
 
 #include <algorithm>
@@ -17,26 +17,26 @@ namespace dermis::oracle {
 
 inline constexpr int block_px = 16;
 
-enum class Shape { flat, smooth, curved };
+enum class BlockClass { flat, smooth, curved };
 
-/// What a pass makes of a block.
-struct BlockClass {
-  Shape shape;
-  Bounded px_per_mm;  ///< px per mm: the largest of the pixels times k, or unless curved that of the tilted surface
-  ShearChoice shear;  ///< of the vertical pass; 0 if curved
+/// How a pass scatters a block.
+struct BlockPass {
+  BlockClass block_class;
+  Bounded px_per_mm;  ///< if curved, the largest of the pixels' times k, 0 if none scatters; else of the tilted surface
+  BoundedShear shear;  ///< of the vertical pass; 0 if curved
 };
 
 class Blocks {
  public:
-  /// Keeps references. `may_be_flat`: no pixel has a width of its own and no tap is rotated.
+  /// Keeps references. `may_be_flat` says that no pixel has a width of its own and no tap is rotated.
   Blocks(const Surface& surface, std::span<const Material> materials, bool may_be_flat);
 
-  int columns() const { return columns_; }
-  int rows() const { return rows_; }
+  int columns() const { return size_blocks_[horizontal]; }
+  int rows() const { return size_blocks_[vertical]; }
 
-  /// What a pass along that axis makes of a block: first the oracle's decision, then any other that a float32 device
-  /// may come to. The px_per_mm is 0 if no pixel scatters.
-  std::vector<BlockClass> kinds(Axis axis, int column, int row) const;
+  /// Returns how a pass along that axis scatters a block: the oracle's decision first, then any other that a float32
+  /// device may come to.
+  std::vector<BlockPass> classify(Axis axis, int column, int row) const;
 
   /// Calls visit(x, y) for the pixels of a block that lie in the frame.
   template <typename Visit>
@@ -47,13 +47,13 @@ class Blocks {
   }
 
  private:
-  /// The smallest and the largest of some values.
+  /// The smallest and the largest of some values. Its results are 0 if there are no values.
   class Range {
    public:
     void add(Bounded value);
     void add(const Range& other);
-    Bounded middle() const;      ///< 0 if there are no values
-    Bounded half_range() const;  ///< 0 if there are no values
+    Bounded middle() const;
+    Bounded half_range() const;
 
    private:
     double low_ = std::numeric_limits<double>::infinity();
@@ -76,58 +76,69 @@ class Blocks {
   static constexpr std::size_t most_materials = 127;
   using MaterialSet = std::bitset<most_materials>;
 
-  struct Block {
+  /// The depths that some pixels show.
+  struct Relief {
     Range depth_mm;
     std::array<Range, 2> step_mm;  ///< change of depth to the next pixel of the same material, along x and along y
+    bool is_partial = false;       ///< a material covers only a part of some pixel
+
+    void add(const Relief& other);
+  };
+
+  struct Block {
+    Relief relief;
     std::array<Largest, 2> px_per_mm;
     MaterialSet scatters;          ///< some pixel has a wide kernel of that material
     MaterialSet surely_scatters;   ///< on any device
     MaterialSet perhaps_scatters;  ///< on some
-    bool is_partial = false;       ///< a material covers only a part of some pixel
   };
 
-  /// How far around a block its pixels' surroundings are looked at.
+  /// Column and row of a block.
+  using Place = std::array<int, 2>;
+
+  /// The distance within which the surface around a block decides on its class.
   struct Reach {
     int nominal_px;
     int least_px;  ///< of a device
     int most_px;
   };
 
-  /// A decision: what it is, and whether a device may decide otherwise.
+  /// A decision, and whether a device may decide otherwise.
   struct Decision {
     bool yes;
     bool unsure;
   };
 
-  /// What is looked at around a block, and along which shear.
+  /// The blocks around a block that decide on its class, and the shear of the pass.
   struct Extent {
     int along_blocks;  ///< to either side along the pass
     int side_blocks;   ///< across it
-    ShearChoice shear;
+    BoundedShear shear;
 
     bool operator==(const Extent&) const = default;
   };
 
   struct Surroundings;
+  struct Variation;
 
   void add_pixel(Block& block, int x, int y) const;
+  const Block& at(const Place& place) const {
+    return blocks_[static_cast<std::size_t>(place[vertical]) * columns() + place[horizontal]];
+  }
   Reach reach(Axis axis, const Block& block) const;
-  const Block& at(int column, int row) const { return blocks_[static_cast<std::size_t>(row) * columns_ + column]; }
-  Surroundings surroundings(Axis axis, int column, int row, const Extent& extent) const;
-  struct Variation;
-  Variation variation(Axis axis, int column, int row, const ShearChoice& shear, const Range& depth_mm,
-                      const std::array<Range, 2>& step_mm) const;
-  ShearChoice shear(int column, int row) const;
-  std::vector<Extent> extents(Axis axis, int column, int row) const;
-  void add_kinds(Axis axis, int column, int row, const Extent& extent, std::vector<BlockClass>& kinds) const;
+  std::vector<Extent> extents(Axis axis, const Place& place) const;
+  Surroundings surroundings(Axis axis, const Place& place, const Extent& extent) const;
+  BoundedShear shear(const Place& place) const;
+  Variation variation(Axis axis, const Place& place, const BoundedShear& shear, const Relief& relief) const;
+  void add_passes(Axis axis, const Place& place, const Extent& extent, std::vector<BlockPass>& passes) const;
   static Decision is_at_most(Bounded a, Bounded b);
   static Decision both(Decision a, Decision b);
 
   const Surface& surface_;
   std::span<const Material> materials_;
   bool may_be_flat_;
-  int columns_;
-  int rows_;
+  std::array<int, 2> size_px_;      ///< of the frame
+  std::array<int, 2> size_blocks_;  ///< columns and rows
   std::vector<Block> blocks_;
 };
 

@@ -1,21 +1,22 @@
-/// The level table of levels. See Taps.
+/// The choice of a tap level by the kernel's radius. See Taps.
 #pragma once
 
 #include "dermis/tap_tables.hpp"
 
 namespace dermis::oracle {
 
-/// Parts of a level that have flat weights of their own.
+/// A level has flat weights of its own for each of so many parts.
 inline constexpr int level_parts = 8;
 
-/// Which part of which level a kernel radius lies in, as level_parts * level + part: -1 below half a pixel, then 16
-/// equal steps in each octave, and equal parts of those; `nearest`: the nearest of the parts.
+/// Returns the part in which a kernel radius lies, as level_parts * level + part: 16 equal levels in each octave from
+/// half a pixel on, with equal parts. A narrower kernel has -1. If `nearest`, the radius is rounded to the nearest
+/// part.
 int level_step(double radius_px, bool nearest, const Taps& taps);
 
-/// The level of a step, -1 for -1.
+/// Returns the level of a step, -1 for -1.
 constexpr int level_of(int step) { return step < 0 ? -1 : step / level_parts; }
 
-/// The offset of the farthest tap of a step's level, px.
+/// Returns the offset of the farthest tap of a step's level, px; 0 without taps.
 int farthest_px(int step, const Taps& taps);
 
 }  // namespace dermis::oracle

@@ -29,7 +29,7 @@ void check(const Picture& a, const Picture& b, const Picture& where) {
 
 bool is_same_kind(double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); }
 
-/// |a - b|: 0 if both are the same kind of not finite, infinite if only one is or the kinds differ.
+/// Returns |a - b|. Of values that are not finite it is 0 if both are the same, and infinite otherwise.
 double gap(double a, double b) {
   if (std::isfinite(a) && std::isfinite(b)) return std::abs(a - b);
   return is_same_kind(a, b) ? 0 : infinity;
@@ -38,9 +38,9 @@ double gap(double a, double b) {
 /// Sums over the values that are compared.
 struct Sums {
   double count = 0;
-  double gap2 = 0;
-  double reference2 = 0;
-  double peak = 0;
+  double gap2 = 0;        ///< of squared gaps
+  double reference2 = 0;  ///< of squared reference values
+  double peak = 0;        ///< the largest reference value
 };
 
 double ratio(double a, double b) {

@@ -14,8 +14,8 @@ namespace dermis::oracle {
 
 namespace {
 
-constexpr double background_depth = 1e9;  // scene units, see Frame
-constexpr double mix_over_reach = 4;      // 12 mm of depth for a reach of 3 mm, with the lens of the authors' demo
+constexpr double background_depth = 1e9;  // scene units; see Frame
+constexpr double mix_over_reach = 4;      // The authors' demo mixes over 12 mm of depth for a reach of 3 mm.
 
 double reach_mm(const SliceMaterial& material) { return material.radius_mm / 3; }
 
@@ -35,7 +35,7 @@ std::vector<SliceTap> slice_taps(const SliceMaterial& material, int count) {
   for (int i = 0; i < count; ++i) {
     const double step = taps[std::min(i + 1, count - 1)].offset_mm - taps[std::max(i - 1, 0)].offset_mm;
     for (int c = 0; c < 3; ++c) {
-      const double r_mm = std::max(std::abs(taps[i].offset_mm), 1e-6 * reach);  // R is asked for beside its centre
+      const double r_mm = std::max(std::abs(taps[i].offset_mm), 1e-6 * reach);  // R may have a pole at 0.
       taps[i].weight[c] = step / 2 * material.radial(c, r_mm);
       sum[c] += taps[i].weight[c];
     }

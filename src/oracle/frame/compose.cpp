@@ -14,7 +14,7 @@ BoundedPicture result(const Surface& surface, const Light& light, const BoundedP
       const SurfacePixel& pixel = surface.at(x, y);
       for (int c = 0; c < 3; ++c) {
         const Bounded before = light.beauty(x, y, c);
-        const Bounded after = light.recomposed(x, y, c, scattered.at(x, y, c));
+        const Bounded after = light.composed(x, y, c, scattered.at(x, y, c));
         Bounded value = pixel.takes_light() ? after : before;
         if (pixel.takes_light_unsure()) value.error = std::abs(after.value - before.value) + after.error;
         result.set(x, y, c, value);
@@ -24,7 +24,7 @@ BoundedPicture result(const Surface& surface, const Light& light, const BoundedP
   return result;
 }
 
-/// Where the material covers only a part of a pixel, the rest is as it was.
+/// Where the material covers only a part of a pixel, the rest keeps its light.
 BoundedPicture blended(const Surface& surface, const Light& light, BoundedPicture scattered) {
   for (int y = 0; y < surface.height(); ++y) {
     for (int x = 0; x < surface.width(); ++x) {
@@ -41,7 +41,7 @@ BoundedPicture blended(const Surface& surface, const Light& light, BoundedPictur
 
 }  // namespace
 
-Reference recompose(const Surface& surface, const Light& light, const BoundedPicture& after) {
+Reference compose(const Surface& surface, const Light& light, const BoundedPicture& after) {
   const BoundedPicture scattered = blended(surface, light, after);
   Reference reference;
   reference.scattered = scattered.value;

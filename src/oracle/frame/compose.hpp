@@ -1,4 +1,4 @@
-/// From scattered light to what a filter writes.
+/// Composes the outputs of a filter from the scattered light.
 #pragma once
 
 #include "dermis/oracle/reference.hpp"
@@ -7,8 +7,8 @@
 
 namespace dermis::oracle {
 
-/// Fills a Reference. `after`: the light after the passes, of which a pixel takes the share that its material covers.
-/// The beauty changes only where the surface is touched.
-Reference recompose(const Surface& surface, const Light& light, const BoundedPicture& after);
+/// Returns the outputs that a filter should have written. A pixel takes the share of `after`, the light after
+/// scattering, that its material covers. The beauty changes only where pixels take light.
+Reference compose(const Surface& surface, const Light& light, const BoundedPicture& after);
 
 }  // namespace dermis::oracle

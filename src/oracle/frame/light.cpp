@@ -6,7 +6,7 @@ namespace dermis::oracle {
 
 namespace {
 
-constexpr double least_albedo = static_cast<double>(1e-4F);  // below, lit light holds no irradiance to divide out
+constexpr double least_albedo = static_cast<double>(1e-4F);  // Below it the irradiance counts as 0: see Lighting::lit.
 
 }  // namespace
 
@@ -21,10 +21,10 @@ Bounded Light::irradiance(int x, int y, int c) const {
 }
 
 // Besides the error of pow itself, the exponent (m or 1 - m) is rounded up to twice, which changes rho^m by at most
-// 2 u |ln rho| of itself.
+// the share 2 u |ln rho|.
 Bounded Light::albedo_power(int x, int y, int c, double exponent) const {
   if (!has_albedo() || exponent == 0) return exact(1);
-  const double albedo = std::fmax(images_.albedo(x, y, c), 0.0);  // 0 if the albedo is not a number
+  const double albedo = std::fmax(images_.albedo(x, y, c), 0.0);  // An albedo that is not a number becomes 0.
   if (albedo == 0) return exact(0);
   return rounded(exact(std::pow(albedo, exponent)), power_roundings + 2 * std::abs(std::log(albedo)));
 }
@@ -41,7 +41,7 @@ BoundedPicture Light::filtered() const {
   return picture;
 }
 
-Bounded Light::recomposed(int x, int y, int c, Bounded scattered) const {
+Bounded Light::composed(int x, int y, int c, Bounded scattered) const {
   const Bounded light = exact(images_.light(x, y, c));
   const Bounded albedo = exact(has_albedo() ? images_.albedo(x, y, c) : 1);
   const Bounded diffuse = lighting_ == Lighting::raw ? albedo * light : light;

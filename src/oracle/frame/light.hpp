@@ -1,4 +1,4 @@
-/// The light that is scattered, and how it is put back into the picture.
+/// The light that is scattered, and how it is put back into the beauty.
 #pragma once
 
 #include <cmath>
@@ -10,7 +10,7 @@
 
 namespace dermis::oracle {
 
-/// An RGB image with its rounding.
+/// An RGB image, and a bound on the rounding of each value.
 struct BoundedPicture {
   Picture value;
   Picture error;
@@ -20,24 +20,26 @@ struct BoundedPicture {
   Bounded at(int x, int y, int c) const { return {value(x, y, c), error(x, y, c)}; }
   void set(int x, int y, int c, Bounded v) {
     value(x, y, c) = v.value;
-    error(x, y, c) = std::isfinite(v.value) ? v.error : 0;  // not finite: a device has no choice either
+    // A device that computes a value which is not finite gets the same one.
+    error(x, y, c) = std::isfinite(v.value) ? v.error : 0;
   }
 };
 
+/// The light of a frame before and after scattering.
 class Light {
  public:
   /// Keeps a reference to `images`.
   Light(const FrameImages& images, const Options& options);
 
-  /// E rho^m at a pixel, where E is the irradiance and rho the albedo: what the filter scatters.
+  /// Returns the light that the filter scatters: E rho^m, where E is the irradiance and rho the albedo.
   Bounded filtered(int x, int y, int c) const;
   BoundedPicture filtered() const;
 
   bool has_beauty() const { return is_there(images_.beauty); }
   Bounded beauty(int x, int y, int c) const { return exact(images_.beauty(x, y, c)); }
 
-  /// The pixel of the beauty whose diffuse light gives way to the scattered light, which is S of what filtered() is.
-  Bounded recomposed(int x, int y, int c, Bounded scattered) const;
+  /// Returns the beauty with its diffuse light replaced by `scattered`, which filtered() became.
+  Bounded composed(int x, int y, int c, Bounded scattered) const;
 
  private:
   bool has_albedo() const { return is_there(images_.albedo); }

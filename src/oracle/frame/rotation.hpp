@@ -1,4 +1,4 @@
-/// The per-pixel rotation of the inner taps.
+/// The random rotation of taps and disc samples, which differs from pixel to pixel.
 #pragma once
 
 #include <array>
@@ -9,18 +9,18 @@
 
 namespace dermis::oracle {
 
-/// Which of 256 angles belongs to the pixel.
+/// Returns which of 256 angles, 0..255, belongs to the pixel.
 int turn_of(int x, int y, std::uint32_t seed);
 
 using PixelOffset = std::array<int, 2>;
 
-/// A direction in pixels, in units of 1/4096; it keeps its length in millimetres when it turns.
+/// A direction in 1/4096 pixel. It keeps its length in millimetres when it turns.
 class Direction {
  public:
-  /// The axis of a pass, turned by the angle that belongs to the pixel.
+  /// Returns the axis of a pass, turned by the angle that belongs to the pixel.
   static Direction turned(Axis axis, int x, int y, std::uint32_t seed, const Camera& camera);
 
-  /// The pixel nearest to `length` along the direction.
+  /// Returns the offset of the pixel nearest to the point `length` pixels along the direction.
   PixelOffset offset(int length) const;
 
  private:

@@ -7,9 +7,9 @@ namespace dermis::oracle {
 
 namespace {
 
-constexpr double one = 4096;
 constexpr int fraction_bits = 12;
-constexpr int most_px = 32;
+constexpr double one = 1 << fraction_bits;
+constexpr int most_px = 32;  // No tap lies farther to the side of its pixel.
 
 }  // namespace
 
@@ -20,23 +20,22 @@ Bounded shear_between(const Tangent& along_x, const Tangent& along_y) {
     mixed = mixed + along_x[i] * along_y[i];
     squared = squared + along_x[i] * along_x[i];
   }
-  // One more rounding covers any order of the sums.
+  // One more rounding covers any order of summation.
   const Bounded ratio = rounded(mixed) / rounded(squared);
-  const auto held = [](double value) { return std::clamp(-value, -1.0, 1.0); };
-  const double shear = held(ratio.value);
-  return {shear, std::max(held(ratio.low()) - shear, shear - held(ratio.high()))};
+  const Bounded negated{-ratio.value, ratio.error};
+  return clamped(negated, -1, 1);
 }
 
-Bounded ShearChoice::columns() const { return {nominal / one, std::max(highest - nominal, nominal - lowest) / one}; }
+Bounded BoundedShear::columns() const { return {nominal / one, std::max(highest - nominal, nominal - lowest) / one}; }
 
-ShearChoice ShearChoice::magnitude() const {
+BoundedShear BoundedShear::magnitude() const {
   const auto [low, high] = std::minmax({std::abs(lowest), std::abs(highest)});
   return {std::abs(nominal), lowest <= 0 && highest >= 0 ? 0 : low, high};
 }
 
-ShearChoice whole_shear(Bounded shear) {
+BoundedShear whole_shear(Bounded shear) {
   const auto whole = [](double value) { return static_cast<int>(std::lround(one * std::clamp(value, -1.0, 1.0))); };
-  // Of a tie any neighbour may be taken.
+  // A device may round a tie to either side.
   const double tie = 0x1p-40;
   return {whole(shear.value), whole(shear.low() - tie), whole(shear.high() + tie)};
 }
@@ -46,7 +45,7 @@ int side_px(int shear, int offset_px) {
   return std::clamp(side, -most_px, most_px);
 }
 
-std::vector<int> sides_px(const ShearChoice& shear, int offset_px) {
+std::vector<int> sides_px(const BoundedShear& shear, int offset_px) {
   const int nominal = side_px(shear.nominal, offset_px);
   const auto [low, high] = std::minmax({side_px(shear.lowest, offset_px), side_px(shear.highest, offset_px)});
   std::vector<int> sides{nominal};

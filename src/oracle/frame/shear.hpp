@@ -1,5 +1,5 @@
-/// The direction of the vertical pass: as many columns per row as make it cross the horizontal one at a right angle on
-/// the surface. See Taps.
+/// The shear of the vertical pass: how many columns it moves per row so that it crosses the horizontal pass at a right
+/// angle on the surface. See Taps.
 #pragma once
 
 #include <array>
@@ -9,32 +9,33 @@
 
 namespace dermis::oracle {
 
-/// Change of position per pixel, mm.
+/// A change of position per pixel, mm.
 using Tangent = std::array<Bounded, 3>;
 
-/// Columns per row, -1..1.
+/// Returns the shear in columns per row, -1..1, given the tangents of the surface along x and along y.
 Bounded shear_between(const Tangent& along_x, const Tangent& along_y);
 
-/// A shear in whole 1/4096, which a device may round to another one.
-struct ShearChoice {
+/// A shear in whole 1/4096 column per row, and the range to which a device may round it.
+struct BoundedShear {
   int nominal = 0;
   int lowest = 0;
   int highest = 0;
 
-  /// Columns per row.
+  /// Returns the columns per row.
   Bounded columns() const;
-  /// Whatever its sign.
-  ShearChoice magnitude() const;
+  /// Returns the absolute value.
+  BoundedShear magnitude() const;
 
-  bool operator==(const ShearChoice&) const = default;
+  bool operator==(const BoundedShear&) const = default;
 };
 
-ShearChoice whole_shear(Bounded shear);
+/// Rounds a shear in columns per row to whole 1/4096.
+BoundedShear whole_shear(Bounded shear);
 
-/// Columns to the side of a tap so many rows below its pixel; `shear` in 1/4096.
+/// Returns how many columns a tap `offset_px` rows below its pixel lies to the right; `shear` is in 1/4096.
 int side_px(int shear, int offset_px);
 
-/// The same for all that a device may take: the oracle's first.
-std::vector<int> sides_px(const ShearChoice& shear, int offset_px);
+/// Returns side_px() for every shear that a device may have, the oracle's own first.
+std::vector<int> sides_px(const BoundedShear& shear, int offset_px);
 
 }  // namespace dermis::oracle

@@ -10,8 +10,8 @@ namespace dermis::oracle {
 
 namespace {
 
-constexpr double background_depth = 1e9;  // scene units, see Frame
-constexpr double id_tolerance = static_cast<double>(1e-3F);
+constexpr double background_depth = 1e9;                     // scene units; see Frame
+constexpr double id_tolerance = static_cast<double>(1e-3F);  // see Frame::material
 
 void check(const FrameImages& images, std::span<const Material> materials) {
   if (materials.empty()) throw Error(ErrorCode::usage, "materials", "none", "at least one");
@@ -57,14 +57,14 @@ int material_by_id(const FrameImages& images, std::span<const Material> material
   return -1;
 }
 
-/// Where the width follows an albedo that is not finite, the pixel's kernel is unknown and it has no material.
+/// Where the width follows an albedo that is not finite the kernel is unknown, so that the pixel has no material.
 int material_at(const FrameImages& images, const View& view, std::span<const Material> materials, int x, int y) {
   if (!is_surface(images, view, x, y)) return -1;
   const int m = material_by_id(images, materials, x, y);
   return m >= 0 && materials[m].width_follows_albedo && !has_albedo(images, x, y) ? -1 : m;
 }
 
-/// s(A) of Christensen and Burley 2015, eq. 6.
+/// Returns s(A) of Christensen and Burley, Approximate Reflectance Profiles, 2015, eq. 6.
 Bounded burley_scale(Bounded albedo) {
   const Bounded from_middle = albedo - as_float(0.8);
   return as_float(1.9) - albedo + exact(3.5) * from_middle * from_middle;
@@ -130,7 +130,8 @@ Surface::Surface(const Frame& frame, const FrameImages& images, std::span<const 
   }
 }
 
-/// To the neighbours of the same material along an axis, mm; where there is only one, both are the difference to it.
+/// The differences of depth to both neighbours of the material along an axis, mm. If there is only one, both are the
+/// difference to it.
 struct Surface::DepthSteps {
   bool has_previous, has_next;
   Bounded backward, forward;
@@ -152,13 +153,15 @@ Surface::DepthSteps Surface::depth_steps(int x, int y, Axis axis) const {
 Bounded Surface::depth_slope(int x, int y, Axis axis) const {
   const auto [has_previous, has_next, backward, forward] = depth_steps(x, y, axis);
   if (!has_previous || !has_next) return forward;
-  // Continuous in both, so that a device that decides otherwise is off by no more than its differences are.
+  // The slope is continuous in both differences, so that a device that decides otherwise is off by no more than they
+  // are.
   const Bounded smaller = std::abs(forward.value) < std::abs(backward.value) ? forward : backward;
   const bool same_sign = (forward.value > 0) == (backward.value > 0);
   return {same_sign ? smaller.value : 0, std::max(forward.error, backward.error)};
 }
 
-/// How the difference of depth along one axis changes along the other one; 0 without both pixels on the diagonal.
+/// Returns how the difference of depth along one axis changes along the other one, mm; 0 without both pixels on the
+/// diagonal.
 Bounded Surface::cross_step(int x, int y, const DepthSteps& along_x, const DepthSteps& along_y) const {
   const SurfacePixel& pixel = at(x, y);
   if (!shows(pixel.material, x - 1, y - 1) || !shows(pixel.material, x + 1, y + 1)) return exact(0);
@@ -167,10 +170,11 @@ Bounded Surface::cross_step(int x, int y, const DepthSteps& along_x, const Depth
   return exact(0.5) * (diagonal - (along_x.forward - along_x.backward) - (along_y.forward - along_y.backward));
 }
 
-// T = (size + ray g, ray' g, g) along x; its change per pixel is (2 size' g + ray h, ray' h, h), where g and h are the
-// first and the second difference of depth, and size' = the change of the ray per pixel. Of a shear s, which adds s
-// columns to each row, g and h are those along (s, 1), and T has s times what it would have along x too.
-Bend Surface::bend(int x, int y, Axis axis, const ShearChoice& shear, float px_per_mm) const {
+// Along x the tangent is T = (size + ray g, ray' g, g), and its change per pixel is (2 size' g + ray h, ray' h, h),
+// where g and h are the first and the second difference of depth, and size' is the change of the ray per pixel. Under a
+// shear s, which moves s columns per row, g and h are the differences along (s, 1), and s times the tangent along x is
+// added.
+Bend Surface::bend(int x, int y, Axis axis, const BoundedShear& shear, float px_per_mm) const {
   const SurfacePixel& pixel = at(x, y);
   const DepthSteps steps = depth_steps(x, y, axis);
   Bounded g = exact(0.5) * (steps.forward + steps.backward);
@@ -195,7 +199,8 @@ Bend Surface::bend(int x, int y, Axis axis, const ShearChoice& shear, float px_p
   return {square * rounded(length2, 2) - exact(1), square * rounded(growth, 2)};
 }
 
-// The change of position with one pixel: the pixel's size along the axis, and the ray's run over the change of depth.
+// One pixel on the position changes by the pixel's size along the axis, and by what the ray runs over the change of
+// depth.
 Tangent Surface::tangent(int x, int y, Axis axis) const { return tangent(x, y, axis, depth_slope(x, y, axis)); }
 
 Tangent Surface::tangent(int x, int y, Axis axis, Bounded slope) const {
@@ -221,7 +226,7 @@ Bounded patch_area(const Tangent& x, const Tangent& y) {
   return square_root(rounded(sum));
 }
 
-ShearChoice Surface::shear(int x, int y) const {
+BoundedShear Surface::shear(int x, int y) const {
   if (!sheared_) return {};
   return whole_shear(shear_between(tangent(x, y, horizontal), tangent(x, y, vertical)));
 }

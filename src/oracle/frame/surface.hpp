@@ -1,4 +1,4 @@
-/// What the pixels of a frame show: which material, where, and how wide light spreads there.
+/// The surface that the pixels of a frame show: its material, where it lies, and how wide light spreads there.
 #pragma once
 
 #include <array>
@@ -14,37 +14,37 @@
 
 namespace dermis::oracle {
 
-/// One pixel. Where there is no material, nothing else is known.
+/// The surface in one pixel. Without a material the other members have no meaning.
 struct SurfacePixel {
-  int material = -1;         ///< index into the materials, by id, depth, mask and matte; -1: none
-  bool bad = false;          ///< light or albedo not finite: part of the surface, but neither gives nor takes light
-  bool wide = false;         ///< has a kernel at least half a pixel wide
-  bool wide_unsure = false;  ///< so close to half a pixel that a float32 device may decide otherwise
-  double covered = 1;        ///< m, the share of the pixel that is of the material, above 0
+  int material = -1;         ///< index into the materials, which id, depth, mask and matte decide; -1: none
+  bool bad = false;          ///< light or albedo are not finite: the pixel is surface, but gives and takes no light
+  bool wide = false;         ///< the kernel's radius is at least half a pixel
+  bool wide_unsure = false;  ///< it is so close to half a pixel that a float32 device may decide otherwise
+  double covered = 1;        ///< m, the share of the pixel that the material covers, above 0
   std::array<Bounded, 3> position_mm{};
-  std::array<Bounded, 2> px_per_mm{};     ///< px per mm along x and y
-  std::array<Bounded, 3> width_factor{};  ///< k: the profile is R(r / k) / k^2
-  std::array<Bounded, 2> segment_mm{};    ///< length of surface that the pixel spans along either pass, times m^2
-  std::array<Bounded, 2> effective_px_per_mm{};  ///< px_per_mm times the widest channel's k, px per mm
+  std::array<Bounded, 2> px_per_mm{};            ///< along x and y
+  std::array<Bounded, 3> width_factor{};         ///< k: the profile is R(r / k) / k^2
+  std::array<Bounded, 2> segment_mm{};           ///< length of surface in the pixel along each pass, times m^2
+  std::array<Bounded, 2> effective_px_per_mm{};  ///< px_per_mm times the widest channel's k
 
   bool gives_light() const { return material >= 0 && !bad; }
   bool takes_light() const { return wide && !bad; }
   bool takes_light_unsure() const { return wide_unsure && !bad; }
 };
 
-/// How a surface differs about a pixel from a plane parallel to the screen of some px_per_mm: q and k of Taps, before
-/// they are held within bounds.
+/// How much the surface about a pixel differs from a plane parallel to the screen that is seen at some number of pixels
+/// per mm: q and k of Taps, before they are clamped.
 struct Bend {
-  Bounded stretch;
-  Bounded skew;
+  Bounded stretch;  ///< q
+  Bounded skew;     ///< k
 };
 
-/// Of the patch of a pixel, whose sides they are, mm^2.
+/// Returns the area of the patch of surface in a pixel, mm^2, given its sides.
 Bounded patch_area(const Tangent& x, const Tangent& y);
 
 class Surface {
  public:
-  /// `sheared`: the vertical pass runs along the shear of each pixel, not along y.
+  /// If `sheared`, the vertical pass runs along the shear of each pixel, not along y.
   /// Throws Error(usage) if there is no material, or several and no material ids, Error(role_missing) if a width
   /// follows an albedo that is not there.
   Surface(const Frame& frame, const FrameImages& images, std::span<const Material> materials, bool sheared);
@@ -56,25 +56,25 @@ class Surface {
 
   const SurfacePixel& at(int x, int y) const { return pixels_[static_cast<std::size_t>(y) * width_ + x]; }
 
-  /// True if the pixel is in the image and of that material, bad or not.
+  /// Returns whether the pixel lies in the frame and has that material, be it bad or not.
   bool shows(int material, int x, int y) const {
     return x >= 0 && y >= 0 && x < width_ && y < height_ && at(x, y).material == material;
   }
 
-  /// Change of depth per pixel along an axis, mm: the smaller one of the differences to both neighbours of the same
-  /// material, 0 if they differ in sign.
+  /// Returns the change of depth per pixel along an axis, mm: the smaller of the differences to both neighbours of the
+  /// material, or 0 if they differ in sign.
   Bounded depth_slope(int x, int y, Axis axis) const;
 
-  /// Change of position with one pixel along an axis where depth changes so much, mm.
+  /// Returns the change of position per pixel along an axis, mm, where the depth changes by `slope`, mm per pixel.
   Tangent tangent(int x, int y, Axis axis, Bounded slope) const;
 
-  /// The shear of a pixel.
-  ShearChoice shear(int x, int y) const;
+  /// Returns the shear of a pixel by its own tangents; 0 if the surface is not sheared.
+  BoundedShear shear(int x, int y) const;
 
-  /// `shear`: of the vertical pass.
-  Bend bend(int x, int y, Axis axis, const ShearChoice& shear, float px_per_mm) const;
+  /// Compares the surface at a pixel with a plane seen at `px_per_mm`; `shear` is that of the vertical pass.
+  Bend bend(int x, int y, Axis axis, const BoundedShear& shear, float px_per_mm) const;
 
-  /// 1 channel: 1 where a pixel takes light.
+  /// Returns 1 channel, which is 1 where a pixel takes light and 0 elsewhere.
   Picture touched() const;
 
  private:

@@ -2,8 +2,8 @@
 
 namespace dermis::oracle {
 
-// A device may take one over the size of a pixel, and that from a reciprocal of the scale that it got: a division and
-// two roundings more.
+// A device may invert the size of a pixel, which it may have from a reciprocal of the scale: a division and two
+// roundings more.
 Bounded View::px_per_mm(Axis axis, Bounded z_mm) const {
   return rounded(as_float(scale(axis)) / (is_perspective() ? z_mm : as_float(mm_per_unit_)), division_roundings + 2);
 }

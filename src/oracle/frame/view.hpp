@@ -18,28 +18,28 @@ class View {
 
   bool is_perspective() const { return camera_.projection == Camera::Projection::perspective; }
 
-  /// Depth in mm of a depth in scene units.
+  /// Converts a depth from scene units to mm.
   Bounded depth_mm(double depth) const { return exact(depth) * as_float(mm_per_unit_); }
 
-  /// Pixels per mm along an axis.
+  /// Returns the pixels per mm along an axis at that depth.
   Bounded px_per_mm(Axis axis, Bounded z_mm) const;
 
-  /// Width or height of a pixel, mm: the inverse of px_per_mm().
+  /// Returns the width or height of a pixel, mm: the inverse of px_per_mm().
   Bounded size_mm(Axis axis, Bounded z_mm) const;
 
-  /// How much of size_mm() comes with a part of the depth.
+  /// Returns how much size_mm() grows with the depth, mm; it does not under an orthographic camera.
   Bounded growth_mm(Axis axis, Bounded dz_mm) const;
 
-  /// Change of x or y with depth along the ray that is seen at x or y = `place_px`.
+  /// Returns the change of x or y with depth along the ray through x or y = `place_px` of the image.
   Bounded ray(Axis axis, double place_px) const;
 
-  /// The point at depth z_mm that is seen at (x_px, y_px).
+  /// Returns the point at depth z_mm that is seen at (x_px, y_px), mm.
   Vec3 unproject(double x_px, double y_px, double z_mm) const;
 
-  /// The same for the centre of a pixel, with the rounding of a device.
+  /// Returns the point at depth z_mm that is seen at the centre of a pixel, with the rounding of a device.
   std::array<Bounded, 3> position(int x, int y, Bounded z_mm) const;
 
-  /// Change of unproject() per pixel along an axis, where the depth changes by dz_mm.
+  /// Returns the change of unproject() per pixel along an axis where the depth changes by dz_mm per pixel.
   Vec3 tangent(Axis axis, double x_px, double y_px, double z_mm, double dz_mm) const;
 
  private:

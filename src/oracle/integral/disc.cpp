@@ -8,6 +8,8 @@
 #include "oracle/frame/compose.hpp"
 #include "oracle/frame/frame_images.hpp"
 #include "oracle/frame/rotation.hpp"
+#include "oracle/integral/disc_plane.hpp"
+#include "oracle/integral/disc_reader.hpp"
 #include "oracle/integral/disc_samples.hpp"
 #include "oracle/integral/disc_texels.hpp"
 #include "oracle/math/gauss_legendre.hpp"
@@ -18,9 +20,7 @@ namespace dermis::oracle {
 
 namespace {
 
-using BoundedRgb = std::array<Bounded, 3>;
-
-/// Levels of detail: few samples up to a kernel radius of 2 px, all from 3 px on.
+/// By default, a pixel has few samples up to a kernel radius of 2 px, and all from 3 px on.
 constexpr int few_samples = 21;
 constexpr int usual_samples = 55;
 constexpr double few_radius_px = 2;
@@ -29,182 +29,11 @@ constexpr double steepest = 0.75;  ///< change of depth per change of place on t
 constexpr int most_levels = 9;
 constexpr double share_within_reach = 1 - 1e-6;
 
-double count_of(const std::vector<Bounded>& values) { return static_cast<double>(values.size()); }
-
-Bounded sum_of(const std::vector<Bounded>& values) {
-  Bounded sum;
-  double magnitudes = 0;
-  for (const Bounded value : values) {
-    sum = {sum.value + value.value, sum.error + value.error};
-    magnitudes += value.magnitude();
-  }
-  return {sum.value, sum.error + count_of(values) * unit_roundoff * magnitudes};
-}
-
-/// The mean by shares that are not negative: whatever they are, it lies among the values.
-Bounded mean_of(const std::vector<Bounded>& shares, const std::vector<Bounded>& values) {
-  WeightedSum sum;
-  double low = values.front().low();
-  double high = values.front().high();
-  for (std::size_t i = 0; i < shares.size(); ++i) {
-    sum.add(shares[i], values[i]);
-    low = std::min(low, values[i].low());
-    high = std::max(high, values[i].high());
-  }
-  const Bounded mean = sum.mean(values.front());
-  const Bounded among = rounded({mean.value, std::max(high - mean.value, mean.value - low)}, 12);
-  return mean.error < among.error ? mean : among;
-}
-
-/// A linear map from mm along a plane, on axes at right angles, to pixels.
-struct DiscPlane {
-  Bounded x_x, x_y, y_x, y_y;
-  Bounded px_per_mm;
-  Bounded inner_mm;  ///< the radius of the disc that a pixel contains
-
-  /// Of the plane in which a pixel spans these.
-  static DiscPlane of(const Tangent& x, const Tangent& y) {
-    const auto dot = [](const Tangent& a, const Tangent& b) {
-      return rounded(a[0] * b[0] + a[1] * b[1] + a[2] * b[2]);
-    };
-    const Bounded length_x = square_root(dot(x, x));
-    const Bounded area = patch_area(x, y);
-    const Bounded along = dot(x, y) / length_x;
-    return {exact(1) / length_x,
-            exact(-1) * along / area,
-            exact(0),
-            exact(1) / (area / length_x),
-            exact(1) / square_root(area),
-            exact(0.5) * area / larger(length_x, square_root(dot(y, y)))};
-  }
-
-  DiscPlane turned(double angle) const {
-    const Bounded cosine = as_float(std::cos(angle));
-    const Bounded sine = as_float(std::sin(angle));
-    DiscPlane plane = *this;
-    plane.x_x = x_x * cosine + x_y * sine;
-    plane.x_y = x_y * cosine - x_x * sine;
-    plane.y_x = y_x * cosine + y_y * sine;
-    plane.y_y = y_y * cosine - y_x * sine;
-    return plane;
-  }
-};
-
-/// What a sample finds: light and the area of surface per pixel by its shares on texels, and how much deeper it lies.
-struct Reading {
-  BoundedRgb light;
-  Bounded area_mm2;
-  Bounded rise_mm;
-};
-
-/// One try to read blocks of one size.
-struct Attempt {
-  bool may_succeed = true;
-  bool may_fail = false;
-  std::optional<Reading> reading;  ///< none if no texel has a share
-};
-
-/// Light of the samples of one pixel.
-class Gatherer {
- public:
-  Gatherer(const Surface& surface, const DiscTexels& texels, int x, int y)
-      : surface_(surface), texels_(texels), x_(x), y_(y), pixel_(surface.at(x, y)) {}
-
-  /// All outcomes of a sample, (dx, dy) pixels away.
-  std::vector<std::optional<Reading>> read(Bounded spacing_px, Bounded dx, Bounded dy) const {
-    std::vector<std::optional<Reading>> outcomes;
-    const int coarsest = level_of(spacing_px.high());
-    for (int first = level_of(spacing_px.low()); first <= coarsest; ++first) {
-      read_from(first, spacing_px, dx, dy, outcomes);
-    }
-    return outcomes;
-  }
-
-  Bounded squared_distance(Bounded dx, Bounded dy, Bounded rise) const {
-    const Bounded z = pixel_.position_mm[2] + rise;
-    Bounded sum = rise * rise;
-    for (const Axis axis : {horizontal, vertical}) {
-      const Bounded ray = surface_.view().ray(axis, (axis == horizontal ? x_ : y_) + 0.5);
-      const Bounded part = ray * rise + (axis == horizontal ? dx : dy) * surface_.view().size_mm(axis, z);
-      sum = sum + part * part;
-    }
-    return rounded(sum);
-  }
-
- private:
-  int level_of(double spacing_px) const {
-    return std::clamp(spacing_px > 0 ? std::ilogb(spacing_px) : 0, 0, texels_.levels() - 1);
-  }
-
-  void read_from(int level, Bounded spacing_px, Bounded dx, Bounded dy,
-                 std::vector<std::optional<Reading>>& outcomes) const {
-    const double size = 1 << level;
-    const auto middle = [&](int pixel) { return ((pixel >> level) + 0.5) * size - (pixel + 0.5); };
-    const Bounded u = (dx - exact(middle(x_))) * exact(1 / size);
-    const Bounded v = (dy - exact(middle(y_))) * exact(1 / size);
-    const Bounded sharpness = exact(size) / spacing_px;
-    bool may_fail = false;
-    for (double column = std::floor(u.low()); column <= std::floor(u.high()); ++column) {
-      for (double row = std::floor(v.low()); row <= std::floor(v.high()); ++row) {
-        const Bounded right = held_within((u - exact(column) - exact(0.5)) * sharpness + exact(0.5), 0, 1);
-        const Bounded below = held_within((v - exact(row) - exact(0.5)) * sharpness + exact(0.5), 0, 1);
-        const Attempt attempt =
-            read_blocks(level, static_cast<int>(column), static_cast<int>(row), right, below, dx, dy);
-        if (attempt.may_succeed) outcomes.push_back(attempt.reading);
-        may_fail = may_fail || attempt.may_fail;
-      }
-    }
-    if (may_fail) read_from(level - 1, spacing_px, dx, dy, outcomes);
-  }
-
-  Attempt read_blocks(int level, int column, int row, Bounded right, Bounded below, Bounded dx, Bounded dy) const {
-    Attempt attempt;
-    std::vector<Bounded> shares, areas, rises;
-    std::array<std::vector<Bounded>, 3> lights;
-    for (int j = 0; j < 2; ++j) {
-      for (int i = 0; i < 2; ++i) {
-        const Bounded share = (i == 0 ? exact(1) - right : right) * (j == 0 ? exact(1) - below : below);
-        if (share.value == 0 && share.error == 0) continue;
-        const int across = column + i;
-        const int down = row + j;
-        const Texel* texel = texels_.at(level, (x_ >> level) + across, (y_ >> level) + down);
-        const bool is_mine = texel != nullptr && (across != 0 || down != 0) && texel->material == pixel_.material;
-        if (level > 0 && (!is_mine || texel->material_unsure)) {
-          attempt.may_fail = true;
-          if (!is_mine && share.low() > 0) attempt.may_succeed = false;
-        }
-        if (!is_mine) continue;
-        shares.push_back(share);
-        areas.push_back(share * texel->area_mm2);
-        const double size = 1 << level;
-        const auto from = [&](int pixel, int steps) {
-          return exact(((pixel >> level) + steps + 0.5) * size - (pixel + 0.5));
-        };
-        rises.push_back((texel->z_mm - pixel_.position_mm[2]) + (dx - from(x_, across)) * texel->slope[horizontal] +
-                        (dy - from(y_, down)) * texel->slope[vertical]);
-        for (int c = 0; c < 3; ++c) lights[c].push_back(texel->light[c]);
-      }
-    }
-    if (shares.empty()) return attempt;
-    Reading reading;
-    for (int c = 0; c < 3; ++c) reading.light[c] = mean_of(areas, lights[c]);
-    reading.area_mm2 = sum_of(areas);
-    reading.rise_mm = mean_of(shares, rises);
-    attempt.reading = reading;
-    return attempt;
-  }
-
-  const Surface& surface_;
-  const DiscTexels& texels_;
-  int x_, y_;
-  const SurfacePixel& pixel_;
-};
-
 /// A material, and its samples in each level of detail.
 struct DiscMaterial {
   const Material* material;
   ProfileTable radial, cdf;
-  std::array<std::vector<DiscSet>, 2> sets;  ///< few and all; few are none if all pixels have as many
+  std::array<std::vector<DiscSet>, 2> sets;  ///< few and all samples; there are no few if all pixels have as many
 };
 
 class DiscFilter {
@@ -227,22 +56,34 @@ class DiscFilter {
     }
   }
 
+  /// Returns the light of a pixel after scattering.
   BoundedRgb at(int x, int y) const {
     const SurfacePixel& pixel = surface_.at(x, y);
     const DiscMaterial& disc = discs_[pixel.material];
     const Bounded width = widest(pixel, *disc.material);
-    const Bounded all = disc.sets[0].empty() ? exact(1) : share_of_all(pixel, *disc.material, width);
+    const Target target{x, y, pixel, disc, width, plane_at(x, y), own_share(x, y, disc)};
+    const Bounded all = disc.sets[0].empty() ? exact(1) : share_of_all(target);
     BoundedRgb result{};
     for (int which = 0; which < 2; ++which) {
       const Bounded part = which == 0 ? exact(1) - all : all;
-      if (part.value == 0 && part.error == 0) continue;
-      const BoundedRgb its = by_sets(x, y, disc, disc.sets[which], width);
-      for (int c = 0; c < 3; ++c) result[c] = result[c] + part * its[c];
+      if (is_exactly(part, 0)) continue;
+      const BoundedRgb light = by_sets(target, disc.sets[which]);
+      for (int c = 0; c < 3; ++c) result[c] = result[c] + part * light[c];
     }
     return result;
   }
 
  private:
+  /// A pixel that gathers light.
+  struct Target {
+    int x, y;
+    const SurfacePixel& pixel;
+    const DiscMaterial& disc;
+    Bounded width;    ///< of its profile over that of the material
+    DiscPlane plane;  ///< not turned
+    BoundedRgb own;   ///< R integrated over its own patch
+  };
+
   static Bounded widest(const SurfacePixel& pixel, const Material& material) {
     Bounded width;
     for (int c = 0; c < 3; ++c) {
@@ -251,15 +92,17 @@ class DiscFilter {
     return width;
   }
 
-  static Bounded share_of_all(const SurfacePixel& pixel, const Material& material, Bounded width) {
-    const Bounded px_per_mm = larger(pixel.px_per_mm[horizontal], pixel.px_per_mm[vertical]);
-    const Bounded radius_px = as_float(material.taps.radius_mm) * width * px_per_mm;
-    return held_within(rounded(radius_px, division_roundings) - exact(few_radius_px), 0, 1);
+  /// Returns the share of the result with all samples; the rest comes from few.
+  static Bounded share_of_all(const Target& target) {
+    const Bounded px_per_mm = larger(target.pixel.px_per_mm[horizontal], target.pixel.px_per_mm[vertical]);
+    const Bounded radius_px = as_float(target.disc.material->taps.radius_mm) * target.width * px_per_mm;
+    return clamped(rounded(radius_px, division_roundings) - exact(few_radius_px), 0, 1);
   }
 
   DiscPlane plane_at(int x, int y) const {
+    const View& view = surface_.view();
     const Bounded z = surface_.at(x, y).position_mm[2];
-    const std::array<Bounded, 2> size{surface_.view().size_mm(horizontal, z), surface_.view().size_mm(vertical, z)};
+    const std::array<Bounded, 2> size{view.size_mm(horizontal, z), view.size_mm(vertical, z)};
     if (!options_.disc.tangent_plane) {
       return DiscPlane::of({size[horizontal], exact(0), exact(0)}, {exact(0), size[vertical], exact(0)});
     }
@@ -267,15 +110,16 @@ class DiscFilter {
     for (const Axis axis : {horizontal, vertical}) steep[axis] = surface_.depth_slope(x, y, axis) / size[axis];
     if (is_there(images_.normal)) {
       const auto n = [&](int i) { return exact(images_.normal(x, y, i)); };
-      const auto ray = [&](Axis axis) { return surface_.view().ray(axis, (axis == horizontal ? x : y) + 0.5); };
+      const auto ray = [&](Axis axis) { return view.ray(axis, (axis == horizontal ? x : y) + 0.5); };
       const Bounded facing = exact(0) - rounded(n(0) * ray(horizontal) + n(1) * ray(vertical) + n(2));
-      const std::array<Bounded, 2> its{n(0) / facing, n(1) / facing};
-      if (facing.value > 0 && std::isfinite(its[0].value) && std::isfinite(its[1].value)) steep = its;
+      const std::array<Bounded, 2> by_normal{n(0) / facing, n(1) / facing};
+      const bool has_normal = std::isfinite(by_normal[0].value) && std::isfinite(by_normal[1].value);
+      if (facing.value > 0 && has_normal) steep = by_normal;
     }
     const Bounded length = square_root(rounded(steep[0] * steep[0] + steep[1] * steep[1]));
     std::array<Tangent, 2> tangents;
     for (const Axis axis : {horizontal, vertical}) {
-      // min(1, steepest / length) has no jump.
+      // min(1, steepest / length) has no jump, so that a device that decides otherwise is off by rounding only.
       Bounded slope = length.value > steepest ? steep[axis] * (exact(steepest) / length) : steep[axis];
       if (length.low() <= steepest && length.high() > steepest) slope = rounded(slope, division_roundings + 8);
       tangents[axis] = surface_.tangent(x, y, axis, slope * size[axis]);
@@ -283,95 +127,92 @@ class DiscFilter {
     return DiscPlane::of(tangents[horizontal], tangents[vertical]);
   }
 
-  /// The sets that the samples of a pixel may be of.
-  BoundedRgb by_sets(int x, int y, const DiscMaterial& disc, const std::vector<DiscSet>& sets, Bounded width) const {
-    const DiscPlane plane = plane_at(x, y);
+  /// Gathers from the set that the pixel's inner disc allows; the bound admits every set that a device may take.
+  BoundedRgb by_sets(const Target& target, const std::vector<DiscSet>& sets) const {
+    const Bounded& inner_mm = target.plane.inner_mm;
     BoundedRgb result{};
     bool is_first = true;
     for (std::size_t start = sets.size(); start-- > 0;) {
-      const Bounded inner = width * as_float(sets[start].inner_mm);
-      if (start > 0 && plane.inner_mm.high() < inner.low()) continue;
-      const BoundedRgb its = mean_over_seeds(x, y, disc, sets[start], width, plane);
-      for (int c = 0; c < 3; ++c) result[c] = is_first ? its[c] : including(result[c], its[c]);
+      const Bounded inner = target.width * as_float(sets[start].inner_mm);
+      if (start > 0 && inner_mm.high() < inner.low()) continue;
+      const BoundedRgb light = mean_over_seeds(target, sets[start]);
+      for (int c = 0; c < 3; ++c) result[c] = is_first ? light[c] : including(result[c], light[c]);
       is_first = false;
-      if (start == 0 || plane.inner_mm.low() >= inner.high()) break;
+      if (start == 0 || inner_mm.low() >= inner.high()) break;
     }
     return result;
   }
 
-  BoundedRgb mean_over_seeds(int x, int y, const DiscMaterial& disc, const DiscSet& set, Bounded width,
-                             const DiscPlane& plane) const {
-    const BoundedRgb own = own_share(x, y, disc);
+  BoundedRgb mean_over_seeds(const Target& target, const DiscSet& set) const {
     const int seeds = options_.disc.accumulate;
     std::array<std::vector<Bounded>, 3> results;
     for (int i = 0; i < seeds; ++i) {
-      const int turn = turn_of(x, y, options_.seed + static_cast<std::uint32_t>(i));
-      const DiscPlane turned = plane.turned(2 * std::numbers::pi * turn / 256);
-      const BoundedRgb its = gathered(x, y, disc, set, width, turned, own);
-      for (int c = 0; c < 3; ++c) results[c].push_back(its[c]);
+      const int turn = turn_of(target.x, target.y, options_.seed + static_cast<std::uint32_t>(i));
+      const BoundedRgb light = gathered(target, set, target.plane.turned(2 * std::numbers::pi * turn / 256));
+      for (int c = 0; c < 3; ++c) results[c].push_back(light[c]);
     }
     BoundedRgb mean;
     for (int c = 0; c < 3; ++c) mean[c] = rounded(sum_of(results[c]) * exact(1.0 / seeds), division_roundings);
     return mean;
   }
 
-  BoundedRgb gathered(int x, int y, const DiscMaterial& disc, const DiscSet& set, Bounded width, const DiscPlane& plane,
-                      const BoundedRgb& own) const {
-    const Gatherer gatherer(surface_, texels_, x, y);
+  BoundedRgb gathered(const Target& target, const DiscSet& set, const DiscPlane& plane) const {
+    const auto [x, y] = std::pair{target.x, target.y};
+    const DiscReader reader(surface_, texels_, x, y);
     std::array<WeightedSum, 3> sums;
-    for (int c = 0; c < 3; ++c) sums[c].add(own[c], light_.at(x, y, c));
+    for (int c = 0; c < 3; ++c) sums[c].add(target.own[c], light_.at(x, y, c));
     for (const DiscSample& sample : set.samples) {
-      const Bounded a = width * as_float(sample.x_mm);
-      const Bounded b = width * as_float(sample.y_mm);
-      const Bounded dx = plane.x_x * a + plane.x_y * b;
-      const Bounded dy = plane.y_x * a + plane.y_y * b;
-      const Bounded spacing_px = width * as_float(sample.spacing_mm) * plane.px_per_mm;
-      add_sample(sums, gatherer, gatherer.read(spacing_px, dx, dy), disc, surface_.at(x, y), spacing_px, dx, dy);
+      const Bounded a = target.width * as_float(sample.x_mm);
+      const Bounded b = target.width * as_float(sample.y_mm);
+      const SamplePlace place{plane.x_x * a + plane.x_y * b, plane.y_x * a + plane.y_y * b,
+                              target.width * as_float(sample.spacing_mm) * plane.px_per_mm};
+      add_sample(sums, target, reader, place);
     }
     BoundedRgb means;
     for (int c = 0; c < 3; ++c) means[c] = sums[c].mean(light_.at(x, y, c));
     return means;
   }
 
-  /// One sample, which may find any of these.
-  void add_sample(std::array<WeightedSum, 3>& sums, const Gatherer& gatherer,
-                  const std::vector<std::optional<Reading>>& outcomes, const DiscMaterial& disc,
-                  const SurfacePixel& pixel, Bounded spacing_px, Bounded dx, Bounded dy) const {
+  /// Adds one sample; the bound admits everything that a device may read there.
+  static void add_sample(std::array<WeightedSum, 3>& sums, const Target& target, const DiscReader& reader,
+                         const SamplePlace& place) {
+    const std::vector<std::optional<Reading>> outcomes = reader.read(place);
     BoundedRgb weight{};
     BoundedRgb light{};
     bool has_light = false;
     for (const std::optional<Reading>& reading : outcomes) {
       const bool is_first = &reading == &outcomes.front();
       for (int c = 0; c < 3; ++c) {
-        Bounded its;
+        Bounded own_weight;
         if (reading) {
-          const Bounded r_squared = gatherer.squared_distance(dx, dy, reading->rise_mm);
-          its = density(disc, pixel, c, r_squared) * spacing_px * spacing_px * reading->area_mm2;
+          const Bounded r_squared = reader.squared_distance(place, reading->rise_mm);
+          own_weight = density(target, c, r_squared) * place.spacing * place.spacing * reading->area_mm2;
           light[c] = has_light ? including(light[c], reading->light[c]) : reading->light[c];
         }
-        weight[c] = is_first ? its : including(weight[c], its);
+        weight[c] = is_first ? own_weight : including(weight[c], own_weight);
       }
       has_light = has_light || reading;
     }
     if (!has_light) return;
-    // Light is multiplied by area first, and by the weight then: not more than so many roundings.
+    // A device multiplies light by the area first and by the weight then, in no more roundings than these.
     for (int c = 0; c < 3; ++c) sums[c].add(rounded(weight[c], 4), rounded(light[c], 8));
   }
 
-  /// R(r / k) / k^2.
-  static Bounded density(const DiscMaterial& disc, const SurfacePixel& pixel, int c, Bounded r_squared) {
-    const Bounded k = pixel.width_factor[c];
+  /// Returns R(r / k) / k^2. Beyond the reach a device may take 0 for it.
+  static Bounded density(const Target& target, int c, Bounded r_squared) {
+    const Bounded k = target.pixel.width_factor[c];
     const Bounded reciprocal = exact(1) / k;
-    Bounded value = disc.radial.at(c, r_squared, k);
+    Bounded value = target.disc.radial.at(c, r_squared, k);
     bool is_beyond = true;
     for (int i = 0; i < 3; ++i) {
-      is_beyond = is_beyond && disc.material->cdf(i, std::sqrt(r_squared.high()) / k.low()) > share_within_reach - 1e-7;
+      const double share = target.disc.material->cdf(i, std::sqrt(r_squared.high()) / k.low());
+      is_beyond = is_beyond && share > share_within_reach - 1e-7;
     }
     if (is_beyond) value.error = std::max(value.error, value.value);
     return value * reciprocal * reciprocal;
   }
 
-  /// R integrated over the patch of the pixel, as in surface_integral.
+  /// Integrates R over the patch of the pixel, as surface_integral does.
   BoundedRgb own_share(int x, int y, const DiscMaterial& disc) const {
     const SurfacePixel& pixel = surface_.at(x, y);
     std::array<Tangent, 2> tangents;
@@ -413,22 +254,22 @@ Reference disc(const Frame& frame, std::span<const Material> materials, const Op
   const FrameImages images = read_images(frame);
   const Surface surface(frame, images, materials, false);
   const Light light(images, options);
-  const BoundedPicture x = light.filtered();
-  const DiscFilter filter(surface, images, materials, options, x);
-  BoundedPicture scattered = x;
-  for (int j = 0; j < surface.height(); ++j) {
-    for (int i = 0; i < surface.width(); ++i) {
-      const SurfacePixel& pixel = surface.at(i, j);
+  const BoundedPicture before = light.filtered();
+  const DiscFilter filter(surface, images, materials, options, before);
+  BoundedPicture scattered = before;
+  for (int y = 0; y < surface.height(); ++y) {
+    for (int x = 0; x < surface.width(); ++x) {
+      const SurfacePixel& pixel = surface.at(x, y);
       if (!pixel.takes_light() && !pixel.takes_light_unsure()) continue;
-      const BoundedRgb values = filter.at(i, j);
+      const BoundedRgb after = filter.at(x, y);
       for (int c = 0; c < 3; ++c) {
-        const Bounded taken = pixel.takes_light() ? values[c] : x.at(i, j, c);
-        const Bounded left = pixel.takes_light() ? x.at(i, j, c) : values[c];
-        scattered.set(i, j, c, pixel.takes_light_unsure() ? including(taken, left) : taken);
+        const Bounded taken = pixel.takes_light() ? after[c] : before.at(x, y, c);
+        const Bounded left = pixel.takes_light() ? before.at(x, y, c) : after[c];
+        scattered.set(x, y, c, pixel.takes_light_unsure() ? including(taken, left) : taken);
       }
     }
   }
-  return recompose(surface, light, scattered);
+  return compose(surface, light, scattered);
 }
 
 }  // namespace dermis::oracle

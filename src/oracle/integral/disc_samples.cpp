@@ -8,7 +8,7 @@ namespace dermis::oracle {
 
 namespace {
 
-/// Where the cdf reaches a share, by halving.
+/// Finds by bisection the radius at which the cdf reaches a share.
 double radius(const Material& material, int channel, double share) {
   double low = 0;
   double high = 1;

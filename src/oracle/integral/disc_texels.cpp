@@ -10,7 +10,7 @@ namespace dermis::oracle {
 
 namespace {
 
-constexpr double most_bend = 0.25;  ///< of the block's side
+constexpr double most_bend = 0.25;  ///< distance of texels from a common plane over the block's side
 
 Texel pixel_texel(const Surface& surface, const BoundedPicture& light, int x, int y) {
   const SurfacePixel& pixel = surface.at(x, y);
@@ -28,7 +28,7 @@ Texel pixel_texel(const Surface& surface, const BoundedPicture& light, int x, in
 
 Bounded mean(Bounded a, Bounded b, Bounded c, Bounded d) { return rounded((a + b) + (c + d), 2) * exact(0.25); }
 
-/// The four texels lie in rows.
+/// Joins four texels, given row by row, to one of twice the side, `side_px`.
 Texel block_of(const std::array<const Texel*, 4>& four, int side_px) {
   Texel block;
   block.material = four[0]->material;
@@ -50,13 +50,13 @@ Texel block_of(const std::array<const Texel*, 4>& four, int side_px) {
   const Bounded quarter = exact(0.25 * side_px);
   const Bounded most = exact(most_bend * side_px) * square_root(block.area_mm2);
   for (int i = 0; i < 4; ++i) {
-    const Bounded across = quarter * block.slope[horizontal];
-    const Bounded down = quarter * block.slope[vertical];
+    const Bounded along_x = quarter * block.slope[horizontal];
+    const Bounded along_y = quarter * block.slope[vertical];
     Bounded off = four[i]->z_mm - block.z_mm;
-    off = (i & 1) != 0 ? off - across : off + across;
-    off = absolute((i & 2) != 0 ? off - down : off + down);
-    // A device adds to the depth first.
-    off.error += 4 * unit_roundoff * (block.z_mm.magnitude() + across.magnitude() + down.magnitude());
+    off = (i & 1) != 0 ? off - along_x : off + along_x;
+    off = absolute((i & 2) != 0 ? off - along_y : off + along_y);
+    // A device may add the slopes to the depth of the block first.
+    off.error += 4 * unit_roundoff * (block.z_mm.magnitude() + along_x.magnitude() + along_y.magnitude());
     if (off.low() > most.high()) return {};
     if (off.high() > most.low()) block.material_unsure = true;
   }
@@ -90,9 +90,9 @@ DiscTexels::Level DiscTexels::halved(const Level& finer, int side_px) {
 }
 
 const Texel* DiscTexels::at(int level, int x, int y) const {
-  const Level& its = levels_[level];
-  if (x < 0 || y < 0 || x >= its.width || y >= its.height) return nullptr;
-  return &its.texels[static_cast<std::size_t>(y) * its.width + x];
+  const auto& [width, height, texels] = levels_[level];
+  if (x < 0 || y < 0 || x >= width || y >= height) return nullptr;
+  return &texels[static_cast<std::size_t>(y) * width + x];
 }
 
 }  // namespace dermis::oracle

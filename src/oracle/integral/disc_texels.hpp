@@ -1,4 +1,4 @@
-/// What samples of discs read: pixels, and blocks of 2 x 2, 4 x 4, ... of them.
+/// The texels that disc samples read: pixels, and blocks of 2 x 2, 4 x 4, ... pixels.
 #pragma once
 
 #include <array>
@@ -10,9 +10,9 @@
 namespace dermis::oracle {
 
 struct Texel {
-  int material = -1;             ///< that gives light from all of it; -1: none does
-  bool material_unsure = false;  ///< a device may find that the block bends too much, or too little
-  std::array<Bounded, 3> light{};
+  int material = -1;             ///< the material that gives light from all of the texel; -1: none does
+  bool material_unsure = false;  ///< a device may decide otherwise on whether the block lies nearly in a plane
+  BoundedRgb light{};
   Bounded area_mm2;  ///< of surface per pixel
   Bounded z_mm;      ///< in the middle
   std::array<Bounded, 2> slope{};
@@ -20,12 +20,12 @@ struct Texel {
 
 class DiscTexels {
  public:
-  /// `levels`: how many sizes of blocks, pixels included.
+  /// `levels` limits how many sizes of texels there are, pixels included.
   DiscTexels(const Surface& surface, const BoundedPicture& light, int levels);
 
   int levels() const { return static_cast<int>(levels_.size()); }
 
-  /// nullptr outside the frame, where blocks that do not lie in it as a whole are too.
+  /// Returns nullptr outside the frame, and for blocks that do not lie in the frame as a whole.
   const Texel* at(int level, int x, int y) const;
 
  private:

@@ -27,7 +27,7 @@ struct Sample {
   double area_mm2;
 };
 
-/// How finely the patch of a pixel is sampled, by its distance from the pixel that gathers.
+/// How finely a patch is sampled up to a distance from the pixel that gathers.
 struct Ring {
   int reach_px;
   int points_per_axis;
@@ -36,7 +36,7 @@ constexpr std::array<Ring, 2> near_rings{{{2, 4}, {6, 2}}};
 constexpr int far_points_per_axis = 1;
 constexpr int points_per_edge = 8;
 
-/// The bit of surface that a pixel sees: depth linear over the pixel.
+/// The patch of surface that a pixel sees. Its depth is linear over the pixel.
 class Patch {
  public:
   Patch(const Surface& surface, int x, int y)
@@ -66,7 +66,7 @@ class Patch {
 
 using Samples = std::vector<Sample>;
 
-/// `covered`: the share m of the patch, which counts as m^2 of it.
+/// Samples a patch. Its share m that is `covered` counts as m^2 of the area.
 Samples sample(const Patch& patch, const std::vector<QuadraturePoint>& points, double covered) {
   Samples samples;
   const double area = covered * covered * patch.area_mm2();
@@ -78,7 +78,7 @@ Samples sample(const Patch& patch, const std::vector<QuadraturePoint>& points, d
   return samples;
 }
 
-/// The patches of all pixels, sampled for each ring once.
+/// The patches of all pixels, each sampled once for each ring.
 class SampledSurface {
  public:
   SampledSurface(const Surface& surface, int finer) : width_(surface.width()) {
@@ -94,7 +94,7 @@ class SampledSurface {
     }
   }
 
-  /// The patch of `of` as `from` sees it.
+  /// Returns the samples of the patch of `of` for the pixel `from`, which gathers.
   const Samples& at(Pixel of, Pixel from) const {
     const int distance_px = std::max(std::abs(of.x - from.x), std::abs(of.y - from.y));
     std::size_t ring = 0;
@@ -129,7 +129,7 @@ class Integral {
 
   std::array<double, 3> at(Pixel p) const {
     const int m = surface_.at(p.x, p.y).material;
-    std::array<double, 3> weights = own_light(p);
+    std::array<double, 3> weights = own_share(p);
     std::array<double, 3> sums;
     for (int c = 0; c < 3; ++c) sums[c] = weights[c] * light_(p.x, p.y, c);
     for (const Pixel q : pixels_[m]) {
@@ -145,7 +145,7 @@ class Integral {
   }
 
  private:
-  /// R integrated over the patch of q, as seen from the centre of p.
+  /// Integrates R over the patch of q, about the centre of p.
   std::array<double, 3> light_from(Pixel q, Pixel p) const {
     const SurfacePixel& pixel = surface_.at(p.x, p.y);
     const Material& material = materials_[pixel.material];
@@ -161,9 +161,9 @@ class Integral {
     return sum;
   }
 
-  /// R integrated over the patch of p itself in polar form: an edge at b(t), t in -1/2..1/2, turns the angle by (A / 2)
+  /// Integrates R over the patch of p itself in polar form. An edge at b(t), t in -1/2..1/2, turns the angle by (A / 2)
   /// / |b|^2 dt, and each edge has its twin on the other side.
-  std::array<double, 3> own_light(Pixel p) const {
+  std::array<double, 3> own_share(Pixel p) const {
     const SurfacePixel& pixel = surface_.at(p.x, p.y);
     const Material& material = materials_[pixel.material];
     const Patch patch(surface_, p.x, p.y);
@@ -199,16 +199,16 @@ Reference surface_integral(const Frame& frame, std::span<const Material> materia
   const Surface surface(frame, images, materials, false);
   const Light light(images, options);
   BoundedPicture scattered = light.filtered();
-  const Picture x = scattered.value;
-  const Integral integral(surface, materials, x, finer);
-  for (int j = 0; j < surface.height(); ++j) {
-    for (int i = 0; i < surface.width(); ++i) {
-      if (!surface.at(i, j).takes_light()) continue;
-      const std::array<double, 3> values = integral.at({i, j});
-      for (int c = 0; c < 3; ++c) scattered.value(i, j, c) = values[c];
+  const Picture before = scattered.value;
+  const Integral integral(surface, materials, before, finer);
+  for (int y = 0; y < surface.height(); ++y) {
+    for (int x = 0; x < surface.width(); ++x) {
+      if (!surface.at(x, y).takes_light()) continue;
+      const std::array<double, 3> values = integral.at({x, y});
+      for (int c = 0; c < 3; ++c) scattered.value(x, y, c) = values[c];
     }
   }
-  Reference reference = recompose(surface, light, scattered);
+  Reference reference = compose(surface, light, scattered);
   reference.scattered_bound = {};
   reference.result_bound = {};
   return reference;

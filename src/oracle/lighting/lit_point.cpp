@@ -34,7 +34,7 @@ LitPoint LightSource::reach(const Vec3& point) const {
   const double distance = length(way);
   if (distance == 0) return lit;
   lit.towards = scaled(way, 1 / distance);
-  // The light's position is rounded, and each difference; then a length of three squares, and a division.
+  // The light's position is rounded, and so are each difference, the length of three squares and the division.
   const double coordinates = length(light_.position) + length(point);
   lit.towards_error = unit_roundoff * (2 * coordinates / distance + 16);
   const Bounded d = {distance, unit_roundoff * (2 * coordinates + 10 * distance)};
@@ -54,11 +54,12 @@ LitPoint LightSource::reach(const Vec3& point) const {
 }
 
 Bounded LightSource::row_times(int row, const Vec3& point) const {
-  const double* its = &light_.map.view_projection[static_cast<std::size_t>(4 * row)];
-  const double value = its[0] * point[0] + its[1] * point[1] + its[2] * point[2] + its[3];
+  const double* m = &light_.map.view_projection[static_cast<std::size_t>(4 * row)];
+  const double value = m[0] * point[0] + m[1] * point[1] + m[2] * point[2] + m[3];
   const double magnitude =
-      std::abs(its[0] * point[0]) + std::abs(its[1] * point[1]) + std::abs(its[2] * point[2]) + std::abs(its[3]);
-  return {value, 10 * unit_roundoff * magnitude};  // a point beside the surface, a rounded row, a product, three sums
+      std::abs(m[0] * point[0]) + std::abs(m[1] * point[1]) + std::abs(m[2] * point[2]) + std::abs(m[3]);
+  // The move off the surface is rounded, and so are the row, the products and three sums.
+  return {value, 10 * unit_roundoff * magnitude};
 }
 
 double LightSource::texel_units(const Vec3& point) const {
@@ -69,7 +70,7 @@ double LightSource::texel_units(const Vec3& point) const {
   return std::max(wide, high) * std::max(row_times(3, point).value, 0.0);
 }
 
-/// Along the view axis of the map.
+/// Returns the depth of a point along the view axis of the map, scene units.
 Bounded LightSource::depth_of(const Vec3& point) const {
   if (light_.kind == Light::Kind::directional) {
     const double magnitude = 2 * (length(point) + length(light_.position));
@@ -81,7 +82,8 @@ Bounded LightSource::depth_of(const Vec3& point) const {
   return {depth.value / scale, (depth.error + unit_roundoff * std::abs(depth.value)) / scale};
 }
 
-/// Of what a texel shows: for projective depth the point on the view axis that has it is solved for.
+/// Returns the depth that a texel shows, scene units. For projective depth, it is that of the point on the view axis
+/// which the matrix maps to the texel's value.
 Bounded LightSource::shown_depth(double texel) const {
   if (light_.map.kind == MapDepth::linear) return exact(texel);
   const auto& m = light_.map.view_projection;
@@ -100,8 +102,9 @@ Bounded LightSource::shown_depth(double texel) const {
                       (std::abs(z0) + std::abs(m[11])) / std::abs(divisor))};
 }
 
-double LightSource::mean_at(const Place& place, double x, double y, double sign, double softness_texels,
-                            const OfDepth& f) const {
+/// Averages f over a square with its middle at (x, y). `sign` moves depths and the slant to either end of their errors.
+double LightSource::mean_at(const Square& square, double x, double y, double sign, const OfDepth& f) const {
+  const double softness_texels = square.softness_texels;
   const auto range = [&](double centre, int size) {
     const double low = softness_texels > 0 ? std::max(centre - softness_texels, 0.0) : std::floor(centre);
     const double high = softness_texels > 0 ? std::min(centre + softness_texels, double(size)) : low + 1;
@@ -118,10 +121,10 @@ double LightSource::mean_at(const Place& place, double x, double y, double sign,
       const double wide = std::min(column + 1.0, right) - std::max(double(column), left);
       if (!(wide > 0)) continue;
       const Bounded shown = shown_depth(map_(column, row));
-      double behind = place.depth.value - shown.value;
+      double behind = square.depth.value - shown.value;
       if (std::isnan(behind)) behind = -infinity;
-      if (std::isfinite(behind)) behind += sign * (place.depth.error + shown.error + unit_roundoff * std::abs(behind));
-      const double slant = place.slant * (1 + sign * 16 * unit_roundoff);
+      if (std::isfinite(behind)) behind += sign * (square.depth.error + shown.error + unit_roundoff * std::abs(behind));
+      const double slant = square.slant * (1 + sign * 16 * unit_roundoff);
       sum += wide * high * f(behind, slant);
       area += wide * high;
     }
@@ -129,40 +132,40 @@ double LightSource::mean_at(const Place& place, double x, double y, double sign,
   return sum / area;
 }
 
-LightSource::Mean LightSource::mean_behind(const Vec3& point, const Vec3& deep, double softness_texels,
+LightSource::Mean LightSource::mean_behind(const Vec3& place, const Vec3& deep, double softness_texels,
                                            const OfDepth& f) const {
   if (!is_there(map_)) return {};
-  const Bounded w = row_times(3, point);
+  const Bounded w = row_times(3, place);
   if (!(w.value > 0)) return {};
   const auto coordinate = [&](int row, double sign, int size) {
-    const Bounded clip = row_times(row, point) / w;
+    const Bounded clip = row_times(row, place) / w;
     const double value = (0.5 + sign * 0.5 * clip.value) * size;
     return Bounded{value, size * (0.5 * clip.error + 3 * unit_roundoff * (1 + std::abs(clip.value)))};
   };
-  Place place{coordinate(0, 1, map_.width), coordinate(1, -1, map_.height), depth_of(deep), 1};
+  Square square{coordinate(0, 1, map_.width), coordinate(1, -1, map_.height), softness_texels, depth_of(deep), 1};
   if (light_.kind != Light::Kind::directional) {
-    if (!(place.depth.value > 0)) return {};
-    place.slant = length(difference(light_.position, deep)) / place.depth.value;
+    if (!(square.depth.value > 0)) return {};
+    square.slant = length(difference(light_.position, deep)) / square.depth.value;
   }
   const auto is_on = [](double at, int size) { return at >= 0 && at < size; };
   Mean mean;
-  mean.is_known = is_on(place.x.value, map_.width) && is_on(place.y.value, map_.height);
+  mean.is_known = is_on(square.x.value, map_.width) && is_on(square.y.value, map_.height);
   const auto is_unsure = [&](const Bounded& at, int size) {
     return is_on(at.low(), size) != is_on(at.value, size) || is_on(at.high(), size) != is_on(at.value, size);
   };
-  if (is_unsure(place.x, map_.width) || is_unsure(place.y, map_.height)) mean.value.error = infinity;
+  if (is_unsure(square.x, map_.width) || is_unsure(square.y, map_.height)) mean.value.error = infinity;
   if (!mean.is_known) return mean;
-  mean.value.value = mean_at(place, place.x.value, place.y.value, 0, softness_texels, f);
+  mean.value.value = mean_at(square, square.x.value, square.y.value, 0, f);
   if (mean.value.error > 0) return mean;
-  for (const double x : {place.x.low(), place.x.high()}) {
-    for (const double y : {place.y.low(), place.y.high()}) {
+  for (const double x : {square.x.low(), square.x.high()}) {
+    for (const double y : {square.y.low(), square.y.high()}) {
       for (const double sign : {-1.0, 1.0}) {
-        const double other = mean_at(place, x, y, sign, softness_texels, f);
+        const double other = mean_at(square, x, y, sign, f);
         mean.value.error = std::max(mean.value.error, std::abs(other - mean.value.value));
       }
     }
   }
-  // Shares of texels, their sum and that of the products.
+  // The shares of texels are rounded, and so are their sum and that of the products.
   const double texels = std::pow(2 * softness_texels + 2, 2);
   mean.value.error += unit_roundoff * (2 * texels + 16) * std::abs(mean.value.value);
   return mean;

@@ -16,11 +16,7 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-Vec3 vector_at(const Picture& picture, int x, int y) { return {picture(x, y, 0), picture(x, y, 1), picture(x, y, 2)}; }
-
-bool is_finite(const Vec3& v) { return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]); }
-
-/// P of shading.hpp by the tangent of the angle.
+/// Returns P of dermis/shading.hpp, given the tangent of the angle between half vector and normal.
 double beckmann(const std::vector<SpecularLobe>& lobes, double tangent) {
   double sum = 0;
   const double secant = 1 + tangent * tangent;
@@ -35,7 +31,7 @@ double schlick(double reflectance, double cosine) {
   return reflectance + (1 - reflectance) * std::pow(std::max(1 - cosine, 0.0), 5);
 }
 
-/// pi times the BRDF; `off` moves the tangent and the two cosines by what a device may be off.
+/// Returns pi times the BRDF. `off` moves the tangent and the two cosines by as much as a device may be off.
 double highlight(const ShadingOptions& options, const Vec3& normal, const Vec3& to_light, const Vec3& to_viewer,
                  double off = 0) {
   const Vec3 half_way = sum(to_light, to_viewer);
@@ -46,9 +42,9 @@ double highlight(const ShadingOptions& options, const Vec3& normal, const Vec3& 
   return fresnel * beckmann(options.lobes, tangent) / square * (1 + off);
 }
 
-/// What one lobe shows of light from a whole hemisphere: over half vectors, at an angle a to the normal and turned
-/// about it, in which the hemisphere of lights is dl = 4 (v.h) dh. Lights are above the surface up to a turn that
-/// bisection finds.
+/// Returns the share of light from the whole hemisphere that one lobe reflects. The integral runs over half vectors h,
+/// at an angle a to the normal and turned about it, for which dl = 4 (v.h) dh. Lights are above the surface up to a
+/// turn that bisection finds.
 double reflected_by_lobe(const SpecularLobe& lobe, double reflectance, double cosine) {
   static const std::vector<QuadraturePoint> rule = gauss_legendre(32);
   const Vec3 to_viewer{std::sqrt(1 - cosine * cosine), 0, cosine};
@@ -69,7 +65,7 @@ double reflected_by_lobe(const SpecularLobe& lobe, double reflectance, double co
     }
     double sum = 0;
     for (const QuadraturePoint& point : rule) {
-      // Dense towards the last turn, where the brdf is steep at grazing angles.
+      // The points lie densely towards the last turn, where the BRDF is steep at grazing angles.
       const double x = 0.5 + point.position;
       const Vec3 h = half_vector(a, last * (1 - x * x * x));
       const double v_h = dot(to_viewer, h);
@@ -80,6 +76,13 @@ double reflected_by_lobe(const SpecularLobe& lobe, double reflectance, double co
   };
   return adaptive_integral(ring, 0, std::min(std::atan(6 * lobe.roughness), pi / 2 - 1e-6), 24, 1e-7);
 }
+
+/// A point of a surface as the viewer sees it.
+struct ViewedPoint {
+  Vec3 position, normal, to_viewer;  ///< both directions of unit length
+  double viewer_error;               ///< of each component of to_viewer
+  double facing_viewer;              ///< cosine between both directions
+};
 
 class Shader {
  public:
@@ -108,8 +111,7 @@ class Shader {
   }
 
  private:
-  /// Of the square root of the cosine: finer than a device has it.
-  static constexpr int nodes = 512;
+  static constexpr int nodes = 512;  ///< over the square root of the cosine; a device has fewer
 
   void tabulate() {
     for (int i = 0; i <= nodes; ++i) {
@@ -117,14 +119,14 @@ class Shader {
       reflected_.push_back(reflected_share(options_, root * root));
     }
     double mean = 0;
-    for (int i = 0; i <= nodes; ++i) {  // Simpson's rule over the root x, c = x^2
+    for (int i = 0; i <= nodes; ++i) {  // This is Simpson's rule over the root x, c = x^2.
       const double x = static_cast<double>(i) / nodes;
       mean += (i == 0 || i == nodes ? 1 : 2 + 2 * (i % 2)) * 4 * x * x * x * reflected_[static_cast<std::size_t>(i)];
     }
     mean_ = mean / (3 * nodes);
   }
 
-  /// rho, and by how much it may be off at a cosine that is off by `error`.
+  /// Returns rho at a cosine that may be off by `error`.
   Bounded reflected(double cosine, double error) const {
     const auto at = [&](double c) {
       const double place = std::sqrt(std::clamp(c, 0.0, 1.0)) * nodes;
@@ -137,45 +139,41 @@ class Shader {
   }
 
   void shade_pixel(Shaded& all, int x, int y) const {
-    const Vec3 point = vector_at(position_, x, y);
-    const Vec3 its_normal = vector_at(normal_, x, y);
+    const Vec3 position = vector_at(position_, x, y);
+    const Vec3 normal = vector_at(normal_, x, y);
     const Vec3 albedo = vector_at(albedo_, x, y);
-    if (!is_finite(point) || !is_finite(its_normal) || length(its_normal) == 0 || !is_finite(albedo)) return;
+    if (!is_finite(position) || !is_finite(normal) || length(normal) == 0 || !is_finite(albedo)) return;
     const bool perspective = frame_.viewer.projection == Camera::Projection::perspective;
-    const Vec3 way = perspective ? difference(frame_.viewer.place, point) : scaled(frame_.viewer.place, -1);
+    const Vec3 way = perspective ? difference(frame_.viewer.place, position) : scaled(frame_.viewer.place, -1);
     if (length(way) == 0) return;
     all.touched(x, y) = 1;
-    const Vec3 normal = unit(its_normal);
-    const Vec3 to_viewer = unit(way);
     const double viewer_error =
-        unit_roundoff * (perspective ? 2 * (length(frame_.viewer.place) + length(point)) / length(way) + 16 : 16);
-    const double facing_viewer = dot(normal, to_viewer);
+        unit_roundoff * (perspective ? 2 * (length(frame_.viewer.place) + length(position)) / length(way) + 16 : 16);
+    const ViewedPoint point{position, unit(normal), unit(way), viewer_error, dot(unit(normal), unit(way))};
     const Bounded gain = rounded({1 / (1 - mean_), 1e-5 / ((1 - mean_) * (1 - mean_))});
-    const Bounded seen = (exact(1) - reflected(facing_viewer, 2 * viewer_error + 8 * unit_roundoff)) * gain;
+    const Bounded seen = (exact(1) - reflected(point.facing_viewer, 2 * viewer_error + 8 * unit_roundoff)) * gain;
     for (int c = 0; c < 3; ++c) {
-      const Bounded its = seen * exact(albedo[c]);
-      all.seen(x, y, c) = its.value;
-      all.seen_bound(x, y, c) = its.error;
+      const Bounded coloured = seen * exact(albedo[c]);
+      all.seen(x, y, c) = coloured.value;
+      all.seen_bound(x, y, c) = coloured.error;
     }
-    for (const LightSource& source : lights_) {
-      add_light(all, x, y, source, point, normal, to_viewer, facing_viewer, viewer_error);
-    }
+    for (const LightSource& source : lights_) add_light(all, x, y, source, point);
   }
 
-  void add_light(Shaded& all, int x, int y, const LightSource& source, const Vec3& point, const Vec3& normal,
-                 const Vec3& to_viewer, double facing_viewer, double viewer_error) const {
-    const LitPoint lit = source.reach(point);
-    const double facing = dot(normal, lit.towards);
+  void add_light(Shaded& all, int x, int y, const LightSource& source, const ViewedPoint& point) const {
+    const LitPoint lit = source.reach(point.position);
+    const double facing = dot(point.normal, lit.towards);
     const double facing_error = 2 * lit.towards_error + 10 * unit_roundoff;
     const double bias = source.light().map.bias_units;
     const auto is_lit = [&](double behind_units, double) { return behind_units > bias ? 0.0 : 1.0; };
-    const Vec3 outside = sum(point, scaled(normal, source.texel_units(point) * std::numbers::sqrt2 *
-                                                       (options_.normal_offset_texels + options_.softness_texels)));
+    const double offset_units = source.texel_units(point.position) * std::numbers::sqrt2 *
+                                (options_.normal_offset_texels + options_.softness_texels);
+    const Vec3 outside = sum(point.position, scaled(point.normal, offset_units));
     const LightSource::Mean mean = source.mean_behind(outside, outside, options_.softness_texels, is_lit);
     const Bounded visible = mean.is_known ? mean.value : Bounded{1, mean.value.error};
     const Bounded strength = Bounded{std::max(facing, 0.0), facing_error} * lit.strength * visible;
     const Bounded diffuse = strength * (exact(1) - reflected(facing, facing_error));
-    const Bounded shine = strength * shine_of(lit, normal, to_viewer, facing, facing_viewer, viewer_error);
+    const Bounded shine = strength * shine_of(lit, facing, point);
     for (int c = 0; c < 3; ++c) {
       const Bounded colour = as_float(source.light().colour[c]);
       const Bounded light = Bounded{all.light(x, y, c), all.light_bound(x, y, c)} + diffuse * colour;
@@ -187,14 +185,14 @@ class Shader {
     }
   }
 
-  Bounded shine_of(const LitPoint& lit, const Vec3& normal, const Vec3& to_viewer, double facing, double facing_viewer,
-                   double viewer_error) const {
+  Bounded shine_of(const LitPoint& lit, double facing, const ViewedPoint& point) const {
+    const auto& [position, normal, to_viewer, viewer_error, facing_viewer] = point;
     const double unsure = 4 * (viewer_error + lit.towards_error) + 16 * unit_roundoff;
     if (facing <= 0) return {};
     const double value = facing_viewer > 0 ? highlight(options_, normal, lit.towards, to_viewer) : 0;
     if (std::abs(facing_viewer) < unsure) return {value, highlight(options_, normal, lit.towards, to_viewer) + 1};
     if (facing_viewer <= 0) return {};
-    // The half vector is off by as much as both directions, relative to its length.
+    // Relative to its length, the half vector is off by as much as both directions.
     const Vec3 half_way = sum(lit.towards, to_viewer);
     const double along = dot(unit(half_way), normal);
     const double off = unsure / length(half_way) / along;

@@ -13,17 +13,13 @@ namespace dermis::oracle {
 
 namespace {
 
-constexpr double table_error = 5e-6;  ///< of T for Gaussians and Burley's profile: 4 e^-2 / (8 * 128^2), and rounding
+constexpr double table_error = 5e-6;  // of T for Gaussians and Burley's profile: 4 e^-2 / (8 * 128^2), and rounding
 
 struct Images {
   Picture light, albedo, position, normal, material, mask, thickness, beauty;
 };
 
-Vec3 vector_at(const Picture& picture, int x, int y) { return {picture(x, y, 0), picture(x, y, 1), picture(x, y, 2)}; }
-
-bool is_finite(const Vec3& v) { return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]); }
-
-/// Christensen and Burley 2015, eq. 6.
+/// Returns the width 1 / s(A) of Christensen and Burley, Approximate Reflectance Profiles, 2015, eq. 6.
 double burley_width(double albedo) {
   const double a = std::clamp(albedo, 0.0, 1.0);
   return 1 / (1.9 - a + 3.5 * (a - 0.8) * (a - 0.8));
@@ -97,7 +93,7 @@ class Transmission {
 
   Bounded channel(const std::function<double(double)>& through, int c, const Vec3& point, const Vec3& normal,
                   const std::optional<double>& thickness_mm) const {
-    // The size of what rounding does to a thickness: of the square of it, and of the width.
+    // Rounding changes a thickness by so little: 16 roundings cover its square and the width.
     constexpr double relative = 16 * unit_roundoff;
     const auto at_image = [&]() -> Bounded {
       if (!thickness_mm) return {};

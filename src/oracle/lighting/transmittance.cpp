@@ -8,7 +8,7 @@ namespace dermis::oracle {
 
 double transmittance(const std::function<double(double)>& radial, double thickness_mm, double reach_mm) {
   if (thickness_mm >= reach_mm) return 0;
-  // r = reach x^4, so that what happens within a millionth of the reach has a share of x.
+  // With r = reach x^4 the innermost millionth of the reach has a share of x that quadrature resolves.
   const auto ring = [&](double x) {
     const double r = reach_mm * std::pow(x, 4);
     const double distance = std::hypot(r, thickness_mm);

@@ -12,7 +12,7 @@ struct Legendre {
   double derivative;
 };
 
-/// The Legendre polynomial of a degree >= 1, inside -1..1.
+/// Evaluates the Legendre polynomial of a degree >= 1, at -1 < x < 1.
 Legendre legendre(int degree, double x) {
   double before = 1;
   double value = x;
@@ -26,7 +26,7 @@ Legendre legendre(int degree, double x) {
 
 double root(int degree, int number) {
   double x = std::cos(std::numbers::pi * (number + 0.75) / (degree + 0.5));
-  constexpr int newton_steps = 8;  // far more than it takes from this start
+  constexpr int newton_steps = 8;  // This start is so close that far fewer suffice.
   for (int i = 0; i < newton_steps; ++i) {
     const Legendre p = legendre(degree, x);
     x -= p.value / p.derivative;

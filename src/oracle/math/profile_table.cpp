@@ -16,7 +16,7 @@ Bounded ProfileTable::at(int channel, Bounded r_squared, Bounded width_factor) c
   const double below = f_(channel, std::sqrt(t.value * (1 - step)));
   const double above = f_(channel, std::sqrt(t.value * (1 + step)));
   const double interpolation = std::abs(below - 2 * value + above) / 16;
-  // The argument: f is monotone, so that what lies within the error lies between the values at its ends.
+  // As f is monotone, its values for arguments within the error lie between those at the ends of the error.
   double of_argument = 0;
   if (t.error < step * t.value) {
     of_argument = std::max(std::abs(below - value), std::abs(above - value)) * t.error / (step * t.value) * 1.25;
@@ -25,7 +25,7 @@ Bounded ProfileTable::at(int channel, Bounded r_squared, Bounded width_factor) c
     of_argument =
         std::max(std::abs(f_(channel, std::sqrt(least)) - value), std::abs(f_(channel, std::sqrt(t.high())) - value));
   }
-  // Two nodes that are rounded, their difference, and the line.
+  // Two nodes are rounded, their difference, and the line.
   return rounded({value, interpolation + of_argument}, 4);
 }
 

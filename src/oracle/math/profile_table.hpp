@@ -1,4 +1,4 @@
-/// What a float32 device reads of a function of distance from a table.
+/// A function of distance as a float32 device reads it from a table.
 #pragma once
 
 #include <functional>
@@ -7,8 +7,8 @@
 
 namespace dermis::oracle {
 
-/// f(channel, r), with r^2 and the width factor as a device has them, from a table that is linear in r^2 between 256
-/// nodes or more in each octave.
+/// Reads f(channel, r), given r^2 and the width factor as a device has them. The bound holds for a table that is linear
+/// in r^2 between 256 nodes or more in each octave.
 class ProfileTable {
  public:
   using Function = std::function<double(int channel, double r_mm)>;
@@ -16,7 +16,7 @@ class ProfileTable {
   /// Keeps a reference to `f`.
   explicit ProfileTable(const Function& f) : f_(f) {}
 
-  /// f(r / k).
+  /// Returns f(r / k), where k is the width factor.
   Bounded at(int channel, Bounded r_squared, Bounded width_factor) const;
 
  private:

@@ -7,7 +7,7 @@ namespace dermis::oracle {
 
 namespace {
 
-/// One parabola of one channel, over 0 <= t <= 1.
+/// The parabola of one channel in one octave, over 0 <= t <= 1.
 struct Parabola {
   double a;
   double b;
@@ -20,15 +20,16 @@ struct Parabola {
 
   double at(double t) const { return a + t * (b + t * c); }
 
-  // The bound takes the largest of each summand over first..last, at an end or at the vertex, which value and value - a
-  // share. t itself is exact. Unfused, t c is off by u |t c| and b + t c by u of itself, both of which count t times;
-  // then there are the product with t and the sum with a. Fused there are fewer. Second order in u is below 1e-6 of
-  // that, and each of five steps, loading a coefficient included, may be flushed to zero.
+  // The bound adds up the largest of each summand over first..last, which lies at an end or at the vertex; the value
+  // and the value minus a have the same vertex. t itself is exact. Unfused, t c is off by u |t c| and b + t c by u of
+  // itself, both of which count t times; the product with t and the sum with a add one rounding each. A fused device
+  // rounds less often. Terms of second order in u are below 1e-6 of that, and each of five steps, loading a coefficient
+  // included, may be flushed to zero.
   double largest_error(double value, double first, double last) const {
     double distance = 0;
     double magnitude = 0;
     double rise = 0;
-    const double vertex = -b / (2 * c);  // not a number or infinite for a line
+    const double vertex = -b / (2 * c);  // A line makes it infinite or not a number, which fails both comparisons.
     for (const double t : {first, last, vertex > first && vertex < last ? vertex : first}) {
       distance = std::max(distance, std::abs(at(t) - value));
       magnitude = std::max(magnitude, std::abs(at(t)));
@@ -39,8 +40,8 @@ struct Parabola {
   }
 };
 
-/// Where a fourth power of distance lies: before the first octave at the start of it, beyond the last at the end of
-/// that.
+/// The octave in which a fourth power of distance lies, and how far in it: smaller ones count as the start of the first
+/// octave, larger ones as the end of the last.
 struct Position {
   int octave;
   double t;
@@ -60,8 +61,9 @@ Position position(const RadialTable& table, double r4) {
 
 }  // namespace
 
-// Neighbouring parabolas meet but for the rounding of their coefficients: an octave's boundary within the error of r4
-// counts with both. A device may keep r4 below the end of the last octave, where the largest float32 has t = 1 - 2 u.
+// Neighbouring parabolas meet but for the rounding of their coefficients, so that where an octave's boundary lies
+// within the error of r4 both octaves count. A device may keep r4 below the end of the last octave, where the largest
+// float32 has t = 1 - 2 u.
 Bounded look_up(const RadialTable& table, int channel, Bounded r4) {
   const Position middle = position(table, r4.value);
   const double value = Parabola(table, channel, middle.octave).at(middle.t);

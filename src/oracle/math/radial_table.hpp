@@ -1,4 +1,4 @@
-/// Reading a RadialTable.
+/// Reads a RadialTable.
 #pragma once
 
 #include "dermis/tap_tables.hpp"
@@ -6,7 +6,7 @@
 
 namespace dermis::oracle {
 
-/// The value at the distance r for one channel, in the table's own unit; r4 = r^4.
+/// Returns the value of one channel at the distance r, whose fourth power is r4, in the table's unit of length.
 Bounded look_up(const RadialTable& table, int channel, Bounded r4);
 
 }  // namespace dermis::oracle

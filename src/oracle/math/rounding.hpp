@@ -1,21 +1,24 @@
-/// Running error analysis of float32 arithmetic (Higham, Accuracy and Stability of Numerical Algorithms, section 3.3).
+/// Running error analysis of float32 arithmetic, after Higham, Accuracy and Stability of Numerical Algorithms, section
+/// 3.3.
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
 namespace dermis::oracle {
 
-/// Half a unit in the last place of 1: the relative error of one rounding to float32.
+/// One rounding to float32 is off by at most this share of the value: half a unit in the last place of 1.
 inline constexpr double unit_roundoff = 0x1p-24;
-/// What a device may flush to zero is smaller than this.
+/// A device may flush values below this one to zero.
 inline constexpr double smallest_normal = std::numeric_limits<float>::min();
-/// OpenCL allows 2.5 ulp for a division, that is 5 roundings; one more if the device multiplies by a reciprocal.
+/// OpenCL allows 2.5 ulp for a division, which are 5 roundings; a device that multiplies by a reciprocal rounds once
+/// more.
 inline constexpr double division_roundings = 6;
-/// OpenCL allows 3 ulp for a square root.
+/// OpenCL allows 3 ulp for a square root, which are 6 roundings.
 inline constexpr double square_root_roundings = 6;
-/// OpenCL allows 16 ulp for pow.
+/// OpenCL allows 16 ulp for pow, which are 32 roundings.
 inline constexpr double power_roundings = 32;
 
 /// A value, and a bound on how far from it a float32 device that computes the same may be.
@@ -28,16 +31,18 @@ struct Bounded {
   double high() const { return value + error; }
 };
 
-/// A value that a float32 holds.
+using BoundedRgb = std::array<Bounded, 3>;
+
+/// A value that float32 represents exactly.
 constexpr Bounded exact(double value) { return {value, 0}; }
 
-/// A constant of the caller, which the device gets as float32.
+/// A constant of the caller, which the device gets rounded to float32.
 inline Bounded as_float(double value) {
   const bool held = static_cast<double>(static_cast<float>(value)) == value;
   return {value, held ? 0 : unit_roundoff * std::abs(value)};
 }
 
-/// `a` after `count` more roundings.
+/// Returns `a` after `count` more roundings.
 inline Bounded rounded(Bounded a, double count = 1) {
   return {a.value, a.error + count * unit_roundoff * a.magnitude()};
 }
@@ -68,17 +73,17 @@ inline Bounded square_root(Bounded a) {
   return rounded({value, value > 0 ? a.error / value : std::sqrt(a.error)}, square_root_roundings);
 }
 
-/// The larger one: whichever the device takes, it is no further off than the worse of the two.
+/// Returns the larger one. Whichever the device takes is no further off than the worse of the two.
 inline Bounded larger(Bounded a, Bounded b) { return {std::max(a.value, b.value), std::max(a.error, b.error)}; }
 
 inline Bounded smaller(Bounded a, Bounded b) { return {std::min(a.value, b.value), std::max(a.error, b.error)}; }
 
-inline Bounded held_within(Bounded a, double least, double most) {
+inline Bounded clamped(Bounded a, double least, double most) {
   const double value = std::clamp(a.value, least, most);
   return {value, std::max(std::clamp(a.high(), least, most) - value, value - std::clamp(a.low(), least, most))};
 }
 
-/// `a`, where a device may have `b` instead.
+/// Returns `a` with a bound that admits a device which has `b` instead.
 inline Bounded including(Bounded a, Bounded b) {
   return {a.value, std::max(a.error, std::abs(b.value - a.value) + b.error)};
 }

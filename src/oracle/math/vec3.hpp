@@ -1,4 +1,4 @@
-/// Vectors in space.
+/// Vectors of three doubles.
 #pragma once
 
 #include <array>
@@ -23,5 +23,7 @@ inline Vec3 sum(const Vec3& a, const Vec3& b) { return {a[0] + b[0], a[1] + b[1]
 inline Vec3 difference(const Vec3& a, const Vec3& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
 
 inline Vec3 unit(const Vec3& a) { return scaled(a, 1 / length(a)); }
+
+inline bool is_finite(const Vec3& a) { return std::isfinite(a[0]) && std::isfinite(a[1]) && std::isfinite(a[2]); }
 
 }  // namespace dermis::oracle

@@ -7,10 +7,20 @@ namespace dermis::oracle {
 
 namespace {
 
-/// Of a weight, besides its rounding: it may be flushed to zero.
+/// Besides being rounded, a weight may be flushed to zero.
 double error_of(Bounded weight) { return weight.error + smallest_normal; }
 
 }  // namespace
+
+Bounded sum_of(std::span<const Bounded> values) {
+  Bounded sum;
+  double magnitudes = 0;
+  for (const Bounded value : values) {
+    sum = {sum.value + value.value, sum.error + value.error};
+    magnitudes += value.magnitude();
+  }
+  return {sum.value, sum.error + static_cast<double>(values.size()) * unit_roundoff * magnitudes};
+}
 
 Bounded WeightedSum::weights() const {
   double sum = 0;
@@ -28,15 +38,15 @@ void WeightedSum::scale(Bounded factor) {
   for (Tap& tap : taps_) tap.weight = tap.weight * factor;
 }
 
-// In all that follows a term that goes through k roundings is off by at most k u / (1 - k u) of its magnitude, which
-// is below (k + 1) u for the k < 4096 there can be.
+// In the following a term that goes through k roundings is off by at most k u / (1 - k u) of its magnitude, which is
+// below (k + 1) u for k < 4096; no sum has more terms.
 
 // The device has weights w + dw and inputs x + dx. With m = sum w x / sum w and W = sum w, sum w (x - m) = 0, so
 //     sum (w + dw)(x + dx) / sum (w + dw) - m  =  [sum dw (x - m) + sum (w + dw) dx] / (W + sum dw):
-// an error of weights counts only where the inputs differ. To that comes the arithmetic of n taps, in any order: a
-// above the line (a product and n - 1 sums) and b below it (n - 1 sums) make it
-//     [sum dw (x - m) + sum (w + dw) dx + a - b m] / (W + sum dw + b),
-// and the division; and a product or weight that is flushed to zero. Weights may be negative.
+// an error of weights counts only where the inputs differ. The arithmetic of n taps, in any order, adds an error a
+// above the line (a product and n - 1 sums) and b below it (n - 1 sums), which makes the error
+//     [sum dw (x - m) + sum (w + dw) dx + a - b m] / (W + sum dw + b).
+// The division is rounded, and products and weights may be flushed to zero. Weights may be negative.
 Bounded WeightedSum::mean(Bounded if_weightless) const {
   double weights = 0;
   double sum = 0;
@@ -65,13 +75,13 @@ Bounded WeightedSum::mean(Bounded if_weightless) const {
   return rounded({mean, (propagated + above + below * std::abs(mean)) / least}, division_roundings);
 }
 
-// Called S = total, D = S - sum w, the device has w + dw and x + dx, so that before any arithmetic it is off by
+// With S = total and D = S - sum w, a device that has w + dw and x + dx is off, before any arithmetic, by
 //     sum dw (x - x_p) + sum (w + dw) dx + (D - sum dw) dx_p.
 // It may compute sum w x + (S - sum w) x_p or S x_p + sum w (x - x_p). Multiplied out, the first has terms w x, which
 // go through a product and n sums, and w x_p and S x_p, through n sums, a product and a sum: n + 2 roundings at most.
 // The second has w x and w x_p, through a difference, a product and n sums, n + 2 as well, and S x_p through fewer. So
 // the magnitudes of all terms, n + 3 times u, cover both (and a mixture of both). The second is better where x is about
-// x_p, but no device is held to it. What is flushed to zero: a product and a sum for each tap, and a weight, a
+// x_p, but no device is held to it. A device may flush to zero a product and a sum for each tap, and a weight, a
 // difference or a sum of weights before it is multiplied.
 Bounded WeightedSum::about(Bounded x_p, double total) const {
   double value = total * x_p.value;

@@ -1,11 +1,15 @@
-/// What a pass makes of its taps, with the rounding.
+/// Sums and weighted means, with bounds on the rounding of a float32 device.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "oracle/math/rounding.hpp"
 
 namespace dermis::oracle {
+
+/// The sum of values, which a device may add up in any order.
+Bounded sum_of(std::span<const Bounded> values);
 
 /// Values x and their weights w. A device may multiply them out and add them up in any order, fused or not.
 class WeightedSum {
@@ -13,17 +17,17 @@ class WeightedSum {
   void clear() { taps_.clear(); }
   void add(Bounded weight, Bounded x) { taps_.push_back({weight, x}); }
 
-  /// The sum of the weights.
+  /// Returns the sum of the weights.
   Bounded weights() const;
 
   /// Multiplies all weights.
   void scale(Bounded factor);
 
-  /// sum w x / sum w; `if_weightless` if the weights sum to zero.
+  /// Returns sum w x / sum w, or `if_weightless` if the weights sum to zero.
   Bounded mean(Bounded if_weightless) const;
 
-  /// total x_p + sum w (x - x_p), where the float `total` is what the weights sum to if no tap is missing, and x_p the
-  /// value of the pixel itself, which is not among the x.
+  /// Returns total x_p + sum w (x - x_p). The float `total` is what the weights sum to if no tap is missing, and x_p is
+  /// the value of the pixel itself, which is not among the x.
   Bounded about(Bounded x_p, double total) const;
 
  private:

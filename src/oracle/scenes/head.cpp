@@ -12,13 +12,13 @@ constexpr int skin = 1;
 constexpr int eye = 2;
 constexpr int ring = 3;
 
-/// How far a point is from a surface, below it negative, or less; and whose surface.
+/// The surface nearest to a point.
 struct Nearest {
-  double distance;
+  double distance;  ///< negative below the surface; may be less than the true distance
   int material;
 
-  void join(double other, int its_material) {
-    if (other < distance) *this = {other, its_material};
+  void join(double other, int other_material) {
+    if (other < distance) *this = {other, other_material};
   }
 };
 
@@ -34,17 +34,17 @@ Nearest head_at(const Vec3& p) {
                        0.012 * std::sin(17 * p[0]) * std::sin(15 * p[1] + 1) * std::sin(16 * p[2]);
   Nearest nearest{to_ellipsoid(p, {1, 1.2, 1.05}) + bumps, skin};
   const Vec3 from_ear = difference(p, {-0.62, 0.1, -0.98});
-  // Its flat side faces halfway to the camera.
+  // The flat side of the ear faces halfway to the camera.
   const Vec3 in_ear{0.8 * from_ear[0] + 0.6 * from_ear[2], from_ear[1], -0.6 * from_ear[0] + 0.8 * from_ear[2]};
   nearest.join(to_ellipsoid(in_ear, {0.26, 0.4, 0.05}), skin);
   nearest.join(length(difference(p, {0.38, -0.3, -0.86})) - 0.22, eye);
   const Vec3 from_ring = difference(p, {0, -0.85, 0});
-  const double from_its_line = std::hypot(from_ring[0], from_ring[2]) - 0.85;
-  nearest.join(std::hypot(from_its_line, from_ring[1]) - 0.13, ring);
+  const double from_circle = std::hypot(from_ring[0], from_ring[2]) - 0.85;
+  nearest.join(std::hypot(from_circle, from_ring[1]) - 0.13, ring);
   return nearest;
 }
 
-constexpr double safety = 0.5;  // what is held for a distance may be longer than that
+constexpr double safety = 0.5;  // The distance to a bumpy surface may be overestimated by as much.
 constexpr double on_surface = 1e-7;
 constexpr int most_steps = 600;
 
@@ -52,7 +52,7 @@ class Head : public Subject {
  public:
   explicit Head(const Setting& setting)
       : Subject(setting), radius_mm_(0.34 * std::min(setting.width, setting.height) / setting.px_per_mm) {
-    // The middle of the frame is at the distance that was asked for.
+    // The head moves so that the middle of the frame shows it at the distance that the setting asks for.
     origin_ = {0, 0, setting.distance_mm + radius_mm_};
     const Vec3 start{0, 0, setting.distance_mm - radius_mm_};
     origin_[2] -= walk(start, {0, 0, 1}, 3 * radius_mm_).value_or(radius_mm_) - radius_mm_;
@@ -85,7 +85,7 @@ class Head : public Subject {
  private:
   Vec3 local(const Vec3& point_mm) const { return scaled(difference(point_mm, origin_), 1 / radius_mm_); }
 
-  /// How far it is to the surface, mm, along a direction of length 1.
+  /// Returns the distance to the surface, mm, along a direction of length 1, by sphere tracing.
   std::optional<double> walk(const Vec3& from_mm, const Vec3& direction, double most_mm) const {
     double way_mm = 0;
     for (int i = 0; i < most_steps && way_mm < most_mm; ++i) {

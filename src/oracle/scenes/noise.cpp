@@ -7,7 +7,8 @@ namespace dermis::oracle {
 
 namespace {
 
-/// Uniform in 0..1, of a point of the lattice: the finaliser of SplitMix64 over a mix of its coordinates.
+/// Returns a number that is uniform in 0..1 for a point of the lattice: the finaliser of SplitMix64 over a mix of its
+/// coordinates.
 double at_lattice(std::int64_t x, std::int64_t y, std::int64_t z, int channel) {
   auto bits = static_cast<std::uint64_t>(x) * 0x9e3779b97f4a7c15ULL;
   bits = (bits ^ static_cast<std::uint64_t>(y)) * 0xc2b2ae3d27d4eb4fULL;
@@ -17,7 +18,7 @@ double at_lattice(std::int64_t x, std::int64_t y, std::int64_t z, int channel) {
   return static_cast<double>((bits ^ (bits >> 31)) >> 11) * 0x1p-53;
 }
 
-/// Between the eight points of the lattice around, without jumps of slope.
+/// Interpolates between the eight points of the lattice around p, without jumps of slope.
 double octave(const Vec3& p, int channel) {
   std::array<std::int64_t, 3> corner{};
   Vec3 t{};

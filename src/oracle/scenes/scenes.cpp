@@ -19,21 +19,21 @@ namespace {
 
 constexpr float unseen_depth = 1e10F;
 
-/// A grey gloss on top of the diffuse light.
+/// Returns the grey gloss on top of the diffuse light.
 double highlight(const Vec3& normal, const Vec3& towards_viewer) {
   const Vec3 half_way = unit(sum(towards_light, towards_viewer));
   return 0.3 * std::pow(std::max(0.0, dot(normal, half_way)), 30);
 }
 
-double focal_of(const Kind& kind, int width, int height) { return kind.focal_per_side * std::max(width, height); }
+double focal_of(const SceneKind& kind, int width, int height) { return kind.focal_per_side * std::max(width, height); }
 
-Camera camera_for(const Kind& kind, int width, int height, double px_per_mm, Camera::Projection projection) {
+Camera camera_for(const SceneKind& kind, int width, int height, double px_per_mm, Camera::Projection projection) {
   const double focal_px = focal_of(kind, width, height);
   const double scale = projection == Camera::Projection::perspective ? focal_px : px_per_mm;
   return {projection, scale, scale, width / 2.0, height / 2.0};
 }
 
-Setting setting_of(const Kind& kind, int width, int height, double px_per_mm, const Camera& camera) {
+Setting setting_of(const SceneKind& kind, int width, int height, double px_per_mm, const Camera& camera) {
   return {width, height, px_per_mm, focal_of(kind, width, height) / px_per_mm, View(camera, 1)};
 }
 
@@ -86,9 +86,9 @@ void check(int width, int height, double px_per_mm) {
   }
 }
 
-const Kind& kind_of(std::string_view name) {
+const SceneKind& kind_of(std::string_view name) {
   std::string names;
-  for (const Kind& kind : kinds()) {
+  for (const SceneKind& kind : scene_kinds()) {
     if (kind.info.name == name) return kind;
     names += (names.empty() ? "" : ", ") + kind.info.name;
   }
@@ -115,14 +115,14 @@ Frame Scene::frame() const {
 std::span<const SceneInfo> scenes() {
   static const std::vector<SceneInfo> infos = [] {
     std::vector<SceneInfo> list;
-    for (const Kind& kind : kinds()) list.push_back(kind.info);
+    for (const SceneKind& kind : scene_kinds()) list.push_back(kind.info);
     return list;
   }();
   return infos;
 }
 
 Scene scene(std::string_view name, int width, int height, double px_per_mm, Camera::Projection projection) {
-  const Kind& kind = kind_of(name);
+  const SceneKind& kind = kind_of(name);
   check(width, height, px_per_mm);
   const Camera camera = camera_for(kind, width, height, px_per_mm, projection);
   const Setting setting = setting_of(kind, width, height, px_per_mm, camera);
@@ -136,7 +136,7 @@ Scene scene(std::string_view name, int width, int height, double px_per_mm, Came
 
 namespace {
 
-/// A row of a view-projection matrix: how far a point lies along an axis from the eye, in units of `unit_mm`.
+/// Sets a row of a view-projection matrix to the distance of a point from the eye along an axis, in units of `unit_mm`.
 void set_row(ShadowMap& map, std::size_t row, const Vec3& axis, const Vec3& eye, double unit_mm) {
   for (std::size_t i = 0; i < 3; ++i) map.view_projection[4 * row + i] = axis[i] / unit_mm;
   map.view_projection[4 * row + 3] = -dot(axis, eye) / unit_mm;
@@ -152,7 +152,7 @@ Light SceneLight::with_map() const {
 
 SceneLight scene_light(std::string_view name, int width, int height, double px_per_mm, Camera::Projection projection,
                        int texels) {
-  const Kind& kind = kind_of(name);
+  const SceneKind& kind = kind_of(name);
   check(width, height, px_per_mm);
   const Camera camera = camera_for(kind, width, height, px_per_mm, projection);
   const std::unique_ptr<Subject> subject = kind.make(setting_of(kind, width, height, px_per_mm, camera));

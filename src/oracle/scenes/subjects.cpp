@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "oracle/scenes/ball.hpp"
+
 namespace dermis::oracle {
 
 namespace {
@@ -16,7 +18,7 @@ constexpr Rgb cool_albedo{0.6, 0.7, 0.8};
 constexpr Rgb grey_albedo{0.5, 0.5, 0.5};
 constexpr Rgb white{1, 1, 1};
 
-/// Alternating squares of check_mm, one corner at the origin.
+/// Returns whether a point lies on a bright square of a checkerboard, which has a corner at the origin.
 bool is_bright_check(double a_mm, double b_mm) {
   const auto number = [](double v) { return static_cast<long long>(std::floor(v / check_mm)); };
   return (number(a_mm) + number(b_mm)) % 2 == 0;
@@ -42,7 +44,7 @@ class Tilted : public Subject {
  public:
   using Subject::Subject;
 
-  /// The plane z = distance + tan(tilt) x.
+  /// The plane is z = distance + tan(tilt) x.
   std::optional<Hit> hit(int x, int y) const override {
     const Ray ray = setting_.ray(x, y);
     const double z = (setting_.distance_mm + slope_ * ray.origin[0]) / (1 - slope_ * ray.slope[0]);
@@ -80,12 +82,12 @@ class Sphere : public Subject {
   explicit Sphere(const Setting& setting)
       : Subject(setting),
         radius_mm_(0.35 * std::min(setting.width, setting.height) / setting.px_per_mm),
-        center_{0, 0, setting.distance_mm + radius_mm_} {}
+        ball_{{0, 0, setting.distance_mm + radius_mm_}, radius_mm_} {}
 
   std::optional<Hit> hit(int x, int y) const override {
     const Ray ray = setting_.ray(x, y);
-    if (const std::optional<double> z = meet(ray)) {
-      return Hit{*z, unit(difference(ray.at(*z), center_)), 1, warm_albedo};
+    if (const std::optional<double> z = ball_.meet(ray)) {
+      return Hit{*z, ball_.normal(ray.at(*z)), 1, warm_albedo};
     }
     const double edge_px = std::max(setting_.width, setting_.height) / 32.0;
     const bool within = x + 0.5 >= edge_px && y + 0.5 >= edge_px && x + 0.5 <= setting_.width - edge_px &&
@@ -96,40 +98,23 @@ class Sphere : public Subject {
 
   Rgb light(int, int, const Vec3& point_mm, const Hit& hit) const override {
     const Rgb ambient{0.05, 0.07, 0.1};
-    const bool shadow = hit.material == 1 ? under_bar(point_mm) : behind_sphere(point_mm);
+    const bool shadow = hit.material == 1 ? is_under_bar(point_mm) : ball_.shades(point_mm);
     const double sun = shadow ? 0 : std::max(0.0, dot(hit.normal, towards_light));
     return {ambient[0] + sun_colour[0] * sun, ambient[1] + sun_colour[1] * sun, ambient[2] + sun_colour[2] * sun};
   }
 
-  std::optional<Caster> caster() const override { return Caster{center_, radius_mm_}; }
-  std::optional<double> first_along(const Ray& ray) const override { return meet(ray); }
+  std::optional<Caster> caster() const override { return Caster{ball_.center, radius_mm_}; }
+  std::optional<double> first_along(const Ray& ray) const override { return ball_.meet(ray); }
 
  private:
-  /// Depth of the first point of the sphere on the ray.
-  std::optional<double> meet(const Ray& ray) const {
-    const Vec3 from_center = difference(ray.origin, center_);
-    const double a = dot(ray.slope, ray.slope);
-    const double half_b = dot(ray.slope, from_center);
-    const double c = dot(from_center, from_center) - radius_mm_ * radius_mm_;
-    const double discriminant = half_b * half_b - a * c;
-    if (discriminant < 0) return std::nullopt;
-    return (-half_b - std::sqrt(discriminant)) / a;
-  }
-
-  bool under_bar(const Vec3& point_mm) const {
+  bool is_under_bar(const Vec3& point_mm) const {
     const Vec3 across = unit({1, -1, -0.5});
-    const double offset_mm = dot(difference(point_mm, center_), across);
+    const double offset_mm = dot(difference(point_mm, ball_.center), across);
     return std::abs(offset_mm - 0.5 * radius_mm_) < 0.15 * radius_mm_;
   }
 
-  bool behind_sphere(const Vec3& point_mm) const {
-    const Vec3 to_center = difference(center_, point_mm);
-    const double along = dot(to_center, towards_light);
-    return dot(to_center, to_center) - along * along < radius_mm_ * radius_mm_;
-  }
-
   double radius_mm_;
-  Vec3 center_;
+  Ball ball_;
 };
 
 template <typename Shape>
@@ -139,14 +124,14 @@ std::unique_ptr<Subject> make(const Setting& setting) {
 
 }  // namespace
 
-std::span<const Kind> kinds() {
-  static const std::array<Kind, 7> all{
+std::span<const SceneKind> scene_kinds() {
+  static const std::array<SceneKind, 7> all{
       {{{"impulse", "one lit pixel on a plane parallel to the screen"}, make<Impulse>},
        {{"step", "a vertical shadow edge on a plane parallel to the screen"}, make<Step>},
        {{"tilted", "a plane at 60 degrees to the screen under a checkered light"}, make<Tilted>},
        {{"sphere", "a sphere with cast shadows over a background of no material"}, make<Sphere>},
        {{"touching", "two materials side by side on one plane, one lit red, the other blue"}, make<Touching>},
-       // A lens of 20 degrees from top to bottom of a frame of 280 x 250.
+       // The lens sees 20 degrees from top to bottom of a frame of 280 x 250.
        {{"spheres", "a small sphere over the edge of a large one, before a bright plane, all of one material"},
         make_two_spheres,
         2.53},

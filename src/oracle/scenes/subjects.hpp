@@ -1,4 +1,4 @@
-/// Shapes under a light, as a camera sees them: what the scenes are made of.
+/// The subjects of the scenes: shapes under a light, as a camera sees them.
 #pragma once
 
 #include <array>
@@ -14,7 +14,7 @@ namespace dermis::oracle {
 
 using Rgb = std::array<double, 3>;
 
-/// The ray through the centre of a pixel: the point at depth z is origin + z * slope.
+/// A ray, whose point at depth z is origin + z * slope.
 struct Ray {
   Vec3 origin;
   Vec3 slope;
@@ -22,14 +22,15 @@ struct Ray {
   Vec3 at(double z) const { return sum(origin, scaled(slope, z)); }
 };
 
-/// A scene to look at. `distance_mm` is the depth of its middle.
+/// How a camera looks at a scene.
 struct Setting {
   int width;
   int height;
-  double px_per_mm;
-  double distance_mm;
+  double px_per_mm;    ///< in the middle of the scene
+  double distance_mm;  ///< depth of the middle
   View view;
 
+  /// Returns the ray through the centre of a pixel.
   Ray ray(int x, int y) const {
     const Vec3 near = view.unproject(x + 0.5, y + 0.5, 0);
     const Vec3 far = view.unproject(x + 0.5, y + 0.5, 1);
@@ -37,7 +38,7 @@ struct Setting {
   }
 };
 
-/// What a ray meets. Axes as in Scene: x right, y down, z forward.
+/// The surface that a ray meets, on the axes of Scene: x right, y down, z forward.
 struct Hit {
   double z_mm;
   Vec3 normal;
@@ -45,13 +46,13 @@ struct Hit {
   Rgb albedo;
 };
 
-/// A sphere around what casts a shadow.
+/// A sphere around the shape that casts a shadow.
 struct Caster {
   Vec3 center;
   double radius_mm;
 };
 
-/// Shape and light of a kind of scene.
+/// The shape and the light of a kind of scene.
 class Subject {
  public:
   explicit Subject(const Setting& setting) : setting_(setting) {}
@@ -62,8 +63,9 @@ class Subject {
   virtual std::optional<Hit> hit(int x, int y) const = 0;
   virtual Rgb light(int x, int y, const Vec3& point_mm, const Hit& hit) const = 0;
 
-  /// What casts the shadow that a map of the light shows, if there is a map, and how far along a ray it begins.
+  /// Returns the shape that a shadow map of the light shows; none if the light of the scene has no map.
   virtual std::optional<Caster> caster() const { return std::nullopt; }
+  /// Returns where that shape begins on a ray.
   virtual std::optional<double> first_along(const Ray&) const { return std::nullopt; }
 
  protected:
@@ -75,7 +77,7 @@ class Subject {
 };
 
 /// A kind of scene.
-struct Kind {
+struct SceneKind {
   SceneInfo info;
   std::unique_ptr<Subject> (*make)(const Setting& setting);
   double focal_per_side = 2;  ///< focal length of its perspective camera over the longer side of the frame
@@ -84,10 +86,10 @@ struct Kind {
 std::unique_ptr<Subject> make_two_spheres(const Setting& setting);
 std::unique_ptr<Subject> make_head(const Setting& setting);
 
-/// All there are.
-std::span<const Kind> kinds();
+/// Returns all kinds.
+std::span<const SceneKind> scene_kinds();
 
-/// The colour of that light where it is not 1.
+/// The colour of the light where it is not 1.
 inline constexpr Rgb sun_colour{1, 0.95, 0.85};
 
 /// Unit direction from any surface to the light.

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "oracle/scenes/ball.hpp"
 #include "oracle/scenes/noise.hpp"
 #include "oracle/scenes/subjects.hpp"
 
@@ -9,27 +10,6 @@ namespace dermis::oracle {
 namespace {
 
 constexpr Rgb pale_albedo{0.85, 0.6, 0.5};
-
-struct Ball {
-  Vec3 center;
-  double radius_mm;
-
-  /// Depth of the first point on the ray.
-  std::optional<double> meet(const Ray& ray) const {
-    const Vec3 from_center = difference(ray.origin, center);
-    const double a = dot(ray.slope, ray.slope);
-    const double half_b = dot(ray.slope, from_center);
-    const double discriminant = half_b * half_b - a * (dot(from_center, from_center) - radius_mm * radius_mm);
-    if (discriminant < 0) return std::nullopt;
-    return (-half_b - std::sqrt(discriminant)) / a;
-  }
-
-  bool shades(const Vec3& point_mm) const {
-    const Vec3 to_center = difference(center, point_mm);
-    const double along = dot(to_center, towards_light);
-    return along > 0 && dot(to_center, to_center) - along * along < radius_mm * radius_mm;
-  }
-};
 
 /// A small sphere over the edge of a large one, far before a bright plane; all of one material.
 class TwoSpheres : public Subject {
@@ -44,17 +24,17 @@ class TwoSpheres : public Subject {
     const Ray ray = setting_.ray(x, y);
     for (const Ball& ball : {small_, large_}) {
       if (const std::optional<double> z = ball.meet(ray)) {
-        return Hit{*z, unit(difference(ray.at(*z), ball.center)), 1, pale_albedo};
+        return Hit{*z, ball.normal(ray.at(*z)), 1, pale_albedo};
       }
     }
     return Hit{setting_.distance_mm + 2.75 * radius_mm_, {0, 0, -1}, 1, pale_albedo};
   }
 
   Rgb light(int, int, const Vec3& point_mm, const Hit& hit) const override {
-    const double facing = std::max(0.0, dot(hit.normal, towards_light));
+    const double sun = std::max(0.0, dot(hit.normal, towards_light));
     const bool is_background = hit.z_mm > setting_.distance_mm + 2 * radius_mm_;
-    const bool is_shaded = (hit.normal != facing_of(small_, point_mm) && small_.shades(point_mm));
-    const double strength = is_background ? 1.5 : 0.12 + (is_shaded ? 0 : facing);
+    const bool is_shaded = hit.normal != small_.normal(point_mm) && small_.shades(point_mm);
+    const double strength = is_background ? 1.5 : 0.12 + (is_shaded ? 0 : sun);
     Rgb light;
     for (int c = 0; c < 3; ++c) {
       light[c] = strength * std::exp(1.2 * noise(scaled(point_mm, 7 / radius_mm_), c));
@@ -63,8 +43,6 @@ class TwoSpheres : public Subject {
   }
 
  private:
-  static Vec3 facing_of(const Ball& ball, const Vec3& point_mm) { return unit(difference(point_mm, ball.center)); }
-
   double radius_mm_;
   Ball large_;
   Ball small_;

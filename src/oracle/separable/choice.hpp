@@ -1,4 +1,4 @@
-/// Decisions of a pass that float32 may be too coarse for.
+/// How a pass scatters the pixels of a block, where float32 may be too coarse for the decision.
 #pragma once
 
 #include <span>
@@ -9,19 +9,19 @@
 
 namespace dermis::oracle {
 
-/// How a pass sums at a pixel.
-struct Way {
-  Shape shape;        ///< of the block
-  int flat_part;      ///< of the level, whose weights are taken on a flat block; 0 elsewhere
-  int level;          ///< -1: the kernel is too narrow for taps
-  int rotated;        ///< how many of the level's pairs, the innermost first
-  ShearChoice shear;  ///< of the vertical pass; 0 on a curved block, where each pixel has its own
+/// How a pass sums at the pixels of one material in a block.
+struct Choice {
+  BlockClass block_class;
+  int flat_part;       ///< the part of the level whose weights a flat block takes; else 0
+  int level;           ///< -1: the kernel is too narrow for taps
+  int rotated;         ///< how many of the level's pairs are rotated, the innermost first
+  BoundedShear shear;  ///< of the vertical pass; 0 on a curved block, where each pixel has its own
 
-  bool operator==(const Way&) const = default;
+  bool operator==(const Choice&) const = default;
 };
 
-/// The ways for one material in a block: first the oracle's, then any other that a device may take. `kinds`: what the
-/// block may be, the same way round.
-std::vector<Way> ways(std::span<const BlockClass> kinds, const Taps& taps, double jitter);
+/// Returns the choices for one material in a block that `passes` classify: the oracle's own first, then any other that
+/// a device may come to.
+std::vector<Choice> choices(std::span<const BlockPass> passes, const Taps& taps, double jitter);
 
 }  // namespace dermis::oracle

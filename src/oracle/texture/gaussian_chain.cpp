@@ -1,4 +1,4 @@
-// The chain of Gaussians in texture space.
+// The chain of Gaussian blurs in texture space.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -9,34 +9,34 @@ namespace dermis::oracle {
 
 namespace {
 
-/// A product as float32 has it.
+/// Returns a product as float32 rounds it.
 double as_product(double a, double b) { return static_cast<double>(static_cast<float>(a) * static_cast<float>(b)); }
 
-/// The largest n with n mm <= most, at least 1.
+/// Returns the largest n with n mm <= most, or 1.
 int steps_within(double mm, double most) {
   double n = std::floor(most / mm) + 2;
   while (n > 1 && as_product(n, mm) > most) --n;
   return static_cast<int>(n);
 }
 
-/// The smallest n with n mm >= least, at least 1.
+/// Returns the smallest n >= 1 with n mm >= least.
 int steps_beyond(double mm, double least) {
   double n = std::max(std::floor(least / mm) - 2, 1.0);
   while (as_product(n, mm) < least) ++n;
   return static_cast<int>(n);
 }
 
-/// A tap weight before it is normalised.
+/// Returns the weight of a tap, `o` steps away, before it is normalised.
 double weight_of(bool from_light, int o, double step, double variance) {
   if (!from_light) return std::exp(-o * step * (o * step) / (2 * variance));
   const double scale = step / std::sqrt(2 * variance);
   return std::erf((o + 0.5) * scale) - std::erf((o - 0.5) * scale);
 }
 
-/// What rounding may do to it. exp is good to 6 roundings, and its argument to 12: a length in mm and its square (4), a
-/// quotient (6), the products (2). Of erf an approximation that is good to 1.2e-7, 2 roundings of 1, has 10 more in its
-/// polynomial and 4 in its exponential; its argument is good to 10, whose derivative times the argument is at most 1/2:
-/// that twice, 42, and the difference.
+/// Bounds what rounding does to that weight. exp is exact to 6 roundings, and its argument to 12: a length in mm and
+/// its square (4), a quotient (6), the products (2). erf is approximated to 1.2e-7, which are 2 roundings of 1, with 10
+/// more in its polynomial and 4 in its exponential; its argument is exact to 10, and its derivative times the argument
+/// is at most 1/2. Two of them make 42, and their difference adds 2.
 double weight_error(bool from_light, int o, double step, double variance) {
   const double weight = weight_of(from_light, o, step, variance);
   if (from_light) return 44 * unit_roundoff;
@@ -45,8 +45,8 @@ double weight_error(bool from_light, int o, double step, double variance) {
 
 struct Level {
   bool from_light;
-  double variance;   ///< mm^2, of the blur
-  double deviation;  ///< mm, as float32
+  double variance;   ///< of the blur, mm^2
+  double deviation;  ///< of the blur, mm, as float32 has it
 };
 
 Level level_of(const GaussianChain& chain, int channel, std::size_t k, double finest) {
@@ -63,7 +63,7 @@ int mirrored(int i, int length) {
   return std::min(place, 2 * length - 1 - place);
 }
 
-/// One texel of one pass.
+/// Returns one texel after one pass.
 Bounded blurred(const BoundedPicture& source, const Run& run, int i, int c, double stretch, const Level& level) {
   const double mm = std::max(stretch, level.deviation / static_cast<double>(GaussianChain::most_texels));
   const int step = level.from_light ? 1 : steps_within(mm, as_product(level.deviation, GaussianChain::spacing));
@@ -71,7 +71,7 @@ Bounded blurred(const BoundedPicture& source, const Run& run, int i, int c, doub
   const int taps = steps_beyond(step_mm, level.deviation * static_cast<double>(GaussianChain::reach));
   double norm = 0;
   double sum = 0;
-  double errors = 0;     // of the numerator
+  double errors = 0;     // of the sum
   double magnitude = 0;  // of its terms
   double norm_error = 0;
   for (int o = -taps; o <= taps; ++o) {
@@ -86,7 +86,8 @@ Bounded blurred(const BoundedPicture& source, const Run& run, int i, int c, doub
     norm_error += error;
     magnitude += weight * light.magnitude();
   }
-  // taps sums of two, that many additions, and the products; the same of the norm; a quotient, or weights rounded.
+  // There are `taps` sums of two, as many additions, and the products, in the sum as in the norm, and a quotient; or
+  // the weights are rounded.
   const double roundings = 2 * taps + 6 + division_roundings;
   const double value = sum / norm;
   return {value, (errors + roundings * unit_roundoff * magnitude + std::abs(value) * norm_error) / norm +

@@ -1,4 +1,4 @@
-// Sums of exponentials in texture space, pair by pair of texels.
+// Sums of exponentials in texture space, without recursion: every texel of a run gives light to every other one.
 #include <algorithm>
 #include <cmath>
 #include <complex>
@@ -15,7 +15,7 @@ using Complex = std::complex<double>;
 
 constexpr double longest_texels = 0x1p14;
 
-/// The real part of share gamma / 2 exp(-gamma |x|).
+/// A pole stands for the real part of share gamma / 2 exp(-gamma |x|).
 struct Pole {
   Complex gamma, share;
 };
@@ -32,7 +32,8 @@ std::vector<Pole> poles_of(const Recursion::Function& function) {
   return poles;
 }
 
-/// The distances of borders between the texels of a run from its start, mm, as a pole sees them.
+/// Returns the distances of the borders between texels from the start of a run, mm. The decay rate of a pole limits how
+/// short a texel is.
 std::vector<double> borders_of(const TextureLight& in, const Run& run, double rate) {
   std::vector<double> borders = {0};
   for (int i = 0; i < run.length(); ++i) {
@@ -42,8 +43,8 @@ std::vector<double> borders_of(const TextureLight& in, const Run& run, double ra
   return borders;
 }
 
-/// What each texel of a run gives to texel i: the real part of the pole's share times the integral over the texel of
-/// gamma / 2 times the sum over all images of a point between two mirrors of exp(-gamma distance).
+/// Appends what each texel of a run gives to texel i: the real part of the pole's share times the integral over the
+/// texel of gamma / 2 times the sum of exp(-gamma distance) over all images of a point between two mirrors.
 void append_shares(std::vector<double>& shares, const std::vector<double>& borders, std::size_t i, const Pole& pole) {
   const Complex gamma = pole.gamma;
   const double size = borders.back();
@@ -68,7 +69,7 @@ void append_shares(std::vector<double>& shares, const std::vector<double>& borde
   }
 }
 
-/// The same for all texels of a run, one after the other; the last ones kept, as lines are often alike.
+/// The shares for all texels of a run, one after the other. Those of the last run are kept, as lines are often alike.
 class SharesOnRuns {
  public:
   explicit SharesOnRuns(const Pole& pole) : pole_(pole) {}
@@ -86,10 +87,10 @@ class SharesOnRuns {
   std::vector<double> borders_, shares_;
 };
 
-/// How far float32 recursion may be off for one pole, per size of the largest light. With A = |gamma| / rate, the size
-/// of a state against the light, and d the roundings of z, a step adds 8 A roundings and d (A + 1), of which N steps
-/// count until they have faded, or all of the run there and back. Three sums are made so: from both ends, and on from
-/// what enters, which is multiplied by A in being divided by 1 - z. 20 A are those of the result.
+/// Bounds the rounding of a float32 recursion for one pole, relative to the largest light. Let A = |gamma| / rate be
+/// the size of a state relative to the light, and d the roundings of z. A step adds 8 A + d (A + 1) roundings, which
+/// count for N steps until they have faded, or for all of the run there and back. There are three such sums: one from
+/// each end, and one of what enters, which the division by 1 - z multiplies by A. The result adds 20 A.
 double pole_error(const TextureLight& in, const Run& run, const Pole& pole) {
   const double rate = pole.gamma.real();
   double finest = HUGE_VAL;
@@ -97,13 +98,14 @@ double pole_error(const TextureLight& in, const Run& run, const Pole& pole) {
   const double length = std::max(finest, 1 / (rate * longest_texels));
   const double steps = std::min(-1 / std::expm1(-rate * length), 2.0 * run.length());
   const double size = std::abs(pole.gamma) / rate;
-  // Half a texel's decay: 4 of exp, 4 of the cosine, 4 of its argument, their product; squared, and rounded.
+  // The decay over half a texel has 4 roundings of exp, 4 of the cosine, 4 of its argument and one of their product; it
+  // is squared, and rounded.
   const double decay_roundings = in.differs ? 28 : 3;
   const double per_step = 8 * size + decay_roundings * (size + 1);
   return unit_roundoff * std::abs(pole.share) * (20 * size + 3 * size * per_step * steps);
 }
 
-/// The largest light of a run, and the largest error of it.
+/// Returns the largest light of a run, with the largest error.
 Bounded largest_of(const BoundedPicture& source, const Run& run, int c) {
   Bounded largest;
   for (int i = 0; i < run.length(); ++i) {

@@ -1,4 +1,4 @@
-// Stretches from positions.
+// The stretches of texels by the positions of the surface.
 #include <cmath>
 
 #include "dermis/oracle/texture.hpp"

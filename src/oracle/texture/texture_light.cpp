@@ -9,7 +9,7 @@ namespace dermis::oracle {
 
 namespace {
 
-/// As in light.cpp.
+/// Bounds the power as Light::albedo_power does.
 Bounded power_of(double albedo, double exponent) {
   if (exponent == 0) return exact(1);
   const double positive = std::fmax(albedo, 0.0);

@@ -1,7 +1,6 @@
-/// What a texture holds, and the runs of texels on it.
+/// The light of a texture, and the runs of its texels.
 #pragma once
 
-#include <functional>
 #include <vector>
 
 #include "dermis/oracle/texture.hpp"
@@ -10,10 +9,10 @@
 namespace dermis::oracle {
 
 struct TextureLight {
-  BoundedPicture light;  ///< times albedo^m; 0 where empty
-  Picture stretch;       ///< along u, along v
-  Picture object;
-  bool differs;  ///< stretches are those of each texel
+  BoundedPicture light;  ///< times albedo^m; 0 where a texel is empty
+  Picture stretch;       ///< mm along u and along v, as channels
+  Picture object;        ///< 1 channel: 1 where a texel is not empty
+  bool differs;          ///< each texel has stretches of its own
 
   TextureLight(const TextureFrame& frame, double albedo_mix);
 
@@ -21,7 +20,7 @@ struct TextureLight {
   int height() const { return object.height; }
 };
 
-/// Consecutive texels of a row (axis 0) or a column (axis 1), none of them empty, as long as there are any.
+/// The longest sequence of texels of a row (axis 0) or a column (axis 1) without an empty one.
 struct Run {
   int axis, line, begin, end;
 
@@ -30,9 +29,10 @@ struct Run {
   int y(int i) const { return axis == 0 ? line : begin + i; }
 };
 
+/// Returns the runs of all rows (axis 0) or of all columns (axis 1).
 std::vector<Run> runs_along(const Picture& object, int axis);
 
-/// Puts the light after scattering where it belongs, and the albedo back.
+/// Returns the outputs: the scattered light where texels are not empty, and its product with the rest of the albedo.
 TextureReference texture_reference(const TextureFrame& frame, double albedo_mix, const TextureLight& in,
                                    const BoundedPicture& scattered);
 

@@ -1,4 +1,4 @@
-// What flat blocks make of the light, by hand.
+// The light of flat and smooth blocks, computed by hand.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -17,7 +17,7 @@ namespace dermis::oracle {
 
 namespace {
 
-/// One line of a pass by flat weights.
+/// Scatters one line of a pass by flat weights.
 std::vector<double> convolved(const std::vector<double>& x, const TapLevel& level, const Term& term, std::size_t t,
                               std::size_t terms) {
   std::vector<double> result;
@@ -30,7 +30,7 @@ std::vector<double> convolved(const std::vector<double>& x, const TapLevel& leve
     double differences = static_cast<double>(term.sum[0]) * x[i];
     for (std::size_t pair = 0; pair < level.offsets_px.size(); ++pair) {
       for (const int sign : {-1, 1}) {
-        const auto j = i + static_cast<std::size_t>(sign * level.offsets_px[pair]);  // wraps round below 0
+        const auto j = i + static_cast<std::size_t>(sign * level.offsets_px[pair]);  // It wraps round below 0.
         if (j >= x.size()) continue;
         weights += weight(pair + 1);
         sum += weight(pair + 1) * x[j];
@@ -52,7 +52,7 @@ Lines transposed(const Lines& lines) {
   return result;
 }
 
-/// Red, by rows.
+/// Returns the red light, row by row.
 Lines light_of(const MadeFrame& made) {
   Lines rows(static_cast<std::size_t>(made.height));
   for (std::size_t i = 0; i < made.pixels(); ++i) {
@@ -61,7 +61,7 @@ Lines light_of(const MadeFrame& made) {
   return rows;
 }
 
-/// One term, across and then down.
+/// Scatters the light of one term horizontally, then vertically.
 Lines convolved_twice(Lines lines, const TapLevel& level, const Term& term, std::size_t t, std::size_t terms) {
   for (int pass = 0; pass < 2; ++pass) {
     for (std::vector<double>& line : lines) line = convolved(line, level, term, t, terms);
@@ -76,7 +76,7 @@ TEST_CASE("on a plane parallel to the screen the passes are plain convolutions",
   Random random(41);
   Material material = tiny_material();
   material.taps.radius_mm = 5;
-  material.taps.levels = {made_level(1, {1, 2, 5}, 0)};  // but for the flat weights nothing would be scattered
+  material.taps.levels = {made_level(1, {1, 2, 5}, 0)};  // Only the flat weights scatter light.
   add_term(material.taps, tiny_difference(0.125, 0.5), {});
   material.taps.terms[1].scale = grey(-0.75);
   TapLevel& level = material.taps.levels[0];
@@ -110,7 +110,7 @@ TEST_CASE("on a plane parallel to the screen the passes are plain convolutions",
 }
 
 TEST_CASE("on a smooth block the weights change with the pixel's own surface", "[flat]") {
-  // Depth 0.01 x^2 beside a sharp bend, all within one block: slopes from 0 to 0.8.
+  // The depth is 0.05 x^2 beside a sharp bend, all within one block, so that slopes go from 0 to 0.8.
   const auto depth_mm = [](int x) { return x < 8 ? 0.05 * x * x : 3.2 + 0.8 * (x - 8); };
   const MadeFrame made = row_of_blocks(16, depth_mm);
   Material material = telling_material(5);
@@ -140,7 +140,7 @@ TEST_CASE("on a smooth block the weights change with the pixel's own surface", "
 }
 
 TEST_CASE("a flat block seen at such an angle that the kernel is narrow has no taps", "[flat]") {
-  // |T| = sqrt(2): 0.42 px.
+  // On the tilted plane |T| = sqrt(2), so that the radius is 0.42 px.
   Material material = telling_material(0.6);
   add_term(material.taps, tiny_difference(0.25, 2), {});
   lay_flat(material.taps.levels[3], material.taps.terms,
@@ -148,7 +148,8 @@ TEST_CASE("a flat block seen at such an angle that the kernel is narrow has no t
   for (const double g : {0.0, 1.0}) {
     const MadeFrame made = row_of_blocks(16, [=](int x) { return g * x; });
     const Reference reference = run_as_is(made, std::span(&material, 1));
-    // Along x the mean, and twice the light; then down, where the light is the same all over, twice again.
+    // The horizontal pass takes the mean, and twice the light; the vertical one doubles the latter, as the light is the
+    // same all over a column.
     const double taken = 2 * 0.25;
     CHECK(reference.scattered(5, 2) == (g == 0 ? 25 + taken + 2 * (2 * 25 + taken) : 25 + 2 * 2 * 25));
   }

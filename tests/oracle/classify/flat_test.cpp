@@ -1,4 +1,4 @@
-// Which blocks are flat, by hand.
+// The classification of blocks, decided by hand.
 #include <cmath>
 #include <functional>
 #include <set>
@@ -19,25 +19,25 @@ namespace {
 std::set<int> flat_blocks(const MadeFrame& made, const Material& material) {
   const Reference reference = run_as_is(made, std::span(&material, 1));
   const MadeFrame turned = transposed(made);
-  const Reference down = run_as_is(turned, std::span(&material, 1));
+  const Reference vertical = run_as_is(turned, std::span(&material, 1));
   std::set<int> blocks;
   for (int block = 0; 16 * block < made.width; ++block) {
     const int level = told(reference, 16 * block + 8, 2, false);
-    CHECK(told(down, 2, 16 * block + 8, true) == level);
+    CHECK(told(vertical, 2, 16 * block + 8, true) == level);
     if (level != not_flat) blocks.insert(block);
   }
   return blocks;
 }
 
-/// The level in the middle of the first block of a row.
+/// Returns the level in the middle of the first block of a row.
 int first_level(const MadeFrame& made, const Material& material) {
   return told(run_as_is(made, std::span(&material, 1)), 2, 2, false);
 }
 
 }  // namespace
 
-TEST_CASE("a tilted plane is flat, with the level of its own px_per_mm", "[flat]") {
-  // Change of position per pixel: (1 / F, 0, g) along the tilt, 1 / F across it.
+TEST_CASE("a tilted plane is flat, and has the level of its own pixels per mm", "[flat]") {
+  // The position changes by (1 / F, 0, g) per pixel along the tilt, and by 1 / F across it; F are the pixels per mm.
   for (const double px_per_mm : {2.0, 4.0}) {
     for (const double g : {0.0, 0.125, 0.25, 1.0, -0.5}) {
       INFO(px_per_mm << " px per mm, depth grows by " << g << " per px");
@@ -52,7 +52,8 @@ TEST_CASE("a tilted plane is flat, with the level of its own px_per_mm", "[flat]
 }
 
 TEST_CASE("the change of position under a perspective camera by hand", "[flat]") {
-  // Depth 10 to 10.25 over three pixels, which the middle of the block, at (8, 8), sees along (6.5 / 40, 7 / 50).
+  // The depth goes from 10 to 10.25 over three pixels, and the ray through the middle of the block, at (8, 8), is
+  // (6.5 / 40, 7 / 50).
   MadeFrame made(3, 2, Camera::perspective(40, 50, 1.5, 1));
   made.depth = {10, 10.125F, 10.25F, 10, 10.125F, 10.25F};
   light_squares(made, false);
@@ -65,7 +66,7 @@ TEST_CASE("the change of position under a perspective camera by hand", "[flat]")
     CHECK(told(run_as_is(made, std::span(&material, 1)), 1, 0, false) == level);
     CHECK(told(run_as_is(transposed(made), std::span(&material, 1)), 0, 1, true) == level);
   }
-  // Seen from far off axis the same plane is another: there the depth grows against the ray.
+  // Far off axis the depth grows against the ray.
   made.camera.center_x = 400;
   const Material material = telling_material(3);
   const double other = 10.125 / 40 - 392.0 / 40 * g;
@@ -74,7 +75,7 @@ TEST_CASE("the change of position under a perspective camera by hand", "[flat]")
 }
 
 TEST_CASE("a step is not flat within reach, and flat beyond", "[flat]") {
-  // Blocks that lie at least partly within 9/8 of the farthest tap of a block count with it: 5, 16, 18 and 37 px.
+  // Blocks count that lie at least partly within 9/8 of the distance of a block's farthest tap: 5, 16, 18 and 37 px.
   using Blocks = std::set<int>;
   CHECK(flat_blocks(step(96, 50, 0), telling_material(5)) == Blocks{0, 1, 2, 3, 4, 5});
   CHECK(flat_blocks(step(96, 50, 10), telling_material(5)) == Blocks{0, 1, 5});
@@ -82,13 +83,13 @@ TEST_CASE("a step is not flat within reach, and flat beyond", "[flat]") {
   CHECK(flat_blocks(step(96, 50, 10), telling_material(15.5)) == Blocks{0, 1, 5});
   CHECK(flat_blocks(step(96, 50, 10), telling_material(16.5)) == Blocks{0});
   CHECK(flat_blocks(step(96, 50, 10), telling_material(33)).empty());
-  // Between two blocks: the depths of both tell.
+  // A step between two blocks shows in the depths of both.
   CHECK(flat_blocks(step(96, 48, 10), telling_material(5)) == Blocks{0, 1, 4, 5});
 }
 
 TEST_CASE("what lies beside the blocks of a pass does not count", "[flat]") {
   MadeFrame made(20, 40, one_px_per_mm);
-  for (int i = 0; i < 20 * 40; ++i) made.depth.push_back(i / 20 < 20 ? 1 : 9);  // a step between rows 19 and 20
+  for (int i = 0; i < 20 * 40; ++i) made.depth.push_back(i / 20 < 20 ? 1 : 9);  // The step is between rows 19 and 20.
   light_squares(made, false);
   const Material material = telling_material(5);
   const Reference reference = run_as_is(made, std::span(&material, 1));
@@ -97,20 +98,21 @@ TEST_CASE("what lies beside the blocks of a pass does not count", "[flat]") {
   // A pass along the step does not cross it.
   CHECK(told(reference, 4, 24, false) == level_for(5));
   light_squares(made, true);
-  const Reference down = run_as_is(made, std::span(&material, 1));
-  for (const int y : {4, 24, 36}) CHECK(told(down, 4, y, true) == not_flat);
+  const Reference vertical = run_as_is(made, std::span(&material, 1));
+  for (const int y : {4, 24, 36}) CHECK(told(vertical, 4, y, true) == not_flat);
 }
 
 TEST_CASE("how much the depth may vary", "[flat]") {
-  // A step by D: the differences are 0 and D, T = (1, 0, D / 2), and flat if D^2 / 4 <= (1 + D^2 / 4) / 100.
+  // Across a step by D the differences are 0 and D, and T = (1, 0, D / 2): it is flat if D^2 / 4 <= (1 + D^2 / 4) /
+  // 100.
   const Material material = telling_material(5);
   CHECK(first_level(step(16, 8, 0.19), material) == level_for(5 / std::hypot(1, 0.095)));
   CHECK(first_level(step(16, 8, 0.2), material) == level_for(5 / std::hypot(1, 0.1)));
   CHECK(first_level(step(16, 8, 0.203), material) == smooth + level_for(5 / std::hypot(1, 0.1015)));
-  // Smooth if D^2 / 4 <= 16 (1 + D^2 / 4) / 100.
+  // It is smooth if D^2 / 4 <= 16 (1 + D^2 / 4) / 100.
   CHECK(first_level(step(16, 8, 0.87), material) == smooth + level_for(5 / std::hypot(1, 0.435)));
   CHECK(first_level(step(16, 8, 0.88), material) == not_flat);
-  // Depth that is tilted either way.
+  // The depth is tilted one way, then the other.
   CHECK(first_level(row_of_blocks(16, [](int x) { return 0.099 * std::abs(x - 8); }), material) == level_for(5));
   CHECK(first_level(row_of_blocks(16, [](int x) { return 0.101 * std::abs(x - 8); }), material) ==
         smooth + level_for(5));
@@ -120,7 +122,7 @@ TEST_CASE("how much the depth may vary", "[flat]") {
 }
 
 TEST_CASE("a smooth block has the level of its own middle", "[flat]") {
-  // Slopes 0 and 0.3 in two blocks; within reach of each they vary by 0.3.
+  // Two blocks have slopes 0 and 0.3, which vary by 0.3 within reach of each.
   const MadeFrame made = row_of_blocks(32, [](int x) { return x < 16 ? 0 : 0.3 * (x - 16); });
   const Material material = telling_material(5);
   const Reference reference = run_as_is(made, std::span(&material, 1));
@@ -129,7 +131,8 @@ TEST_CASE("a smooth block has the level of its own middle", "[flat]") {
 }
 
 TEST_CASE("surfaces of two materials one behind the other are a step", "[flat]") {
-  // No difference is taken between them. All within the range of what the slopes and a pixel more amount to is flat.
+  // No slope is taken between the two. The block is flat if its range of depths is no more than what its slopes and one
+  // pixel more amount to.
   const std::vector materials{telling_material(5, 1), telling_material(5, 2)};
   const auto level = [&](double slope, double gap_mm) {
     MadeFrame made = row_of_blocks(16, [=](int x) { return 50 + slope * x + (x < 8 ? 0 : gap_mm); });
@@ -138,7 +141,7 @@ TEST_CASE("surfaces of two materials one behind the other are a step", "[flat]")
   };
   CHECK(level(0, 0.99) == level_for(5));
   CHECK(level(0, 1.01) == not_flat);
-  // 15 slopes and the gap against 16 slopes and |T|.
+  // The range is 15 slopes and the gap; the limit is 16 slopes and |T|.
   const double change = std::hypot(1, 0.125);
   CHECK(level(0.125, 0.125 + change - 0.01) == level_for(5 / change));
   CHECK(level(0.125, 0.125 + change + 0.01) == not_flat);
@@ -178,7 +181,7 @@ TEST_CASE("the bound admits that a block is flat or not where float32 cannot tel
   };
   const auto largest_step = [](float share) { return 2 * share / std::sqrt(1 - static_cast<double>(share) * share); };
   const double just = largest_step(Taps::flatness);
-  const auto at_zero = [](double by_mm) {  // about 0, where float32 is finest
+  const auto at_zero = [](double by_mm) {  // Depths about 0 are those that float32 resolves best.
     return row_of_blocks(16, [=](int x) { return x < 8 ? 0 : by_mm; });
   };
   CHECK(bound(at_zero(just), material, 4) == Approx(2 * 1.5).epsilon(1e-3));
@@ -189,7 +192,7 @@ TEST_CASE("the bound admits that a block is flat or not where float32 cannot tel
   CHECK(bound(at_zero(just_smooth), material, 4) == Approx(taken).epsilon(1e-3));
   CHECK(bound(at_zero(just_smooth * 0.9999), material, 4) < 3e-4);
   CHECK(bound(at_zero(just_smooth * 1.0001), material, 4) < 1e-4);
-  // A reach of 16 pixels, or of 18.
+  // The reach is 16 pixels, or 18.
   CHECK(bound(step(96, 50, 10), telling_material(16), 24) > 0.2);
   CHECK(bound(step(96, 50, 10), telling_material(15.9), 24) < 1e-3);
   CHECK(bound(step(96, 50, 10), telling_material(16.1), 24) < 1e-3);

@@ -17,7 +17,7 @@ namespace {
 
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 
-/// Light of x^2 on a plane.
+/// Returns a plane under the light x^2.
 MadeFrame plane(int width) {
   MadeFrame made(width, 5, one_px_per_mm);
   made.depth.assign(made.pixels(), 10);
@@ -62,7 +62,7 @@ TEST_CASE("the depth of a bad pixel counts for what is flat", "[bad_pixels]") {
   CHECK(told(separable(made.frame(), std::span(&material, 1), {}), 4, 2, false) == level_for(5));
   made.depth[12] = 20;
   CHECK(told(separable(made.frame(), std::span(&material, 1), {}), 4, 2, false) == not_flat);
-  made.depth[12] = 1e10F;  // no surface
+  made.depth[12] = 1e10F;  // There is no surface.
   CHECK(told(separable(made.frame(), std::span(&material, 1), {}), 4, 2, false) == level_for(5));
 }
 
@@ -75,11 +75,11 @@ TEST_CASE("the width of a bad pixel counts for the level of its block", "[bad_pi
   made.light[7] = nan;
   CHECK(run(made, material).scattered(0, 0) > 1.5);
   made.mask[2] = 0.95F;
-  CHECK(run(made, material).scattered(0, 0) == 1);  // the first level has no taps
+  CHECK(run(made, material).scattered(0, 0) == 1);  // The first level has no taps.
 }
 
 TEST_CASE("the depth of a bad pixel counts for the slope of its neighbours", "[bad_pixels]") {
-  // The middle's slope is the smaller one: 1/4, towards the bad pixel.
+  // The middle has the smaller of both slopes, 1/4, which is that towards the bad pixel.
   MadeFrame made = never_flat(three_pixels());
   made.depth = {0, 0.5F, 0.75F};
   made.light[8] = nan;
@@ -87,7 +87,7 @@ TEST_CASE("the depth of a bad pixel counts for the slope of its neighbours", "[b
   const RadialTable& falloff = material.taps.terms[0].falloff;
   const double near = value_of(falloff, 0, 1.25) * std::hypot(1, 0.25);
   CHECK(run(made, tiny_material()).scattered(0, 0) == Approx((0.5 * 1 + near * 10) / (0.5 + near)));
-  // Where the albedo is bad and the width follows it, nothing is known of the kernel: no surface. s(0.8) = 1.1.
+  // Where the albedo is bad and the width follows it, the kernel is unknown and there is no surface. s(0.8) = 1.1.
   made = three_pixels();
   made.depth = {0, 0.5F, 0.75F};
   made.albedo.assign(9, 0.8F);

@@ -15,7 +15,7 @@ namespace dermis::oracle {
 
 namespace {
 
-/// Bytes that an image lies in, somewhere.
+/// Bytes, and the layout of an image somewhere among them.
 struct Store {
   std::vector<std::byte> bytes;
   Layout layout;
@@ -41,7 +41,7 @@ Frame frame_of(int width, int height, const Image& light) {
   return frame;
 }
 
-/// Room for an image with gaps, its axes in either direction.
+/// Returns room for an image with gaps, whose axes run in either direction.
 Store random_store(Random& random, int width, int height, int channels, Format format) {
   const auto value = static_cast<std::ptrdiff_t>(bytes_of(format));
   const std::ptrdiff_t gap = random.integer(0, 3);

@@ -30,7 +30,7 @@ TEST_CASE("a camera projects to where it unprojects from", "[view]") {
   CHECK(flat[2] == 60);
 }
 
-TEST_CASE("the px_per_mm is the pixels between points a millimetre apart", "[view]") {
+TEST_CASE("points a millimetre apart are as many pixels apart as there are pixels per mm", "[view]") {
   Random random(1);
   for (int round = 0; round < 20; ++round) {
     const View view = random_view(random);

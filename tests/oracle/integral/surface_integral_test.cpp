@@ -21,13 +21,13 @@ Reference run(const MadeFrame& made, const Material& material, const Options& op
   return surface_integral(made.frame(), std::span(&material, 1), options, finer);
 }
 
-/// Light of a Gaussian on the strip from a to b.
+/// Returns the light of a Gaussian on the strip from a to b.
 double strip(double a, double b, double sigma) {
   const double scale = sigma * std::numbers::sqrt2;
   return 0.5 * (std::erf(b / scale) - std::erf(a / scale));
 }
 
-/// A plane of rectangular pixels, normalised over those that are in the image: what a Gaussian makes of a lit pixel.
+/// Returns what a Gaussian makes of one lit pixel on a plane of rectangular pixels, normalised over the frame.
 Picture gaussian_impulse(int size, double width_mm, double height_mm, double sigma_mm) {
   Picture picture(size, size, 3);
   const auto on_axis = [&](int from, int to, double pixel_mm) {
@@ -91,7 +91,7 @@ TEST_CASE("an impulse on a plane becomes the Gaussian, and the closer the finer"
 }
 
 TEST_CASE("a tilted plane has longer pixels", "[surface_integral]") {
-  // Slope 3/4: a pixel of 1 mm is 1.25 mm long.
+  // At a slope of 3/4 a pixel of 1 mm is 1.25 mm long.
   MadeFrame made = impulse(21, Camera::orthographic(1, 1));
   for (int i = 0; i < 21 * 21; ++i) made.depth.push_back(0.75F * static_cast<float>(i % 21));
   const Material material = gaussian_material(3, 1);
@@ -101,7 +101,7 @@ TEST_CASE("a tilted plane has longer pixels", "[surface_integral]") {
 }
 
 TEST_CASE("a plane looks the same through any camera", "[surface_integral]") {
-  // Pixels of 0.5 x 0.4 mm.
+  // Pixels are 0.5 x 0.4 mm large.
   const Picture truth = gaussian_impulse(15, 0.5, 0.4, 1);
   const auto seen = [](const Camera& camera, float depth, double mm_per_unit) {
     MadeFrame made = impulse(15, camera);
@@ -150,8 +150,8 @@ TEST_CASE("narrow pixels are left alone but give light", "[surface_integral]") {
 }
 
 TEST_CASE("depth slopes are taken from the nearer side, within the material", "[surface_integral]") {
-  // A cliff in the middle: the floor on either side is flat, so its pixels keep their area and the light gathered on
-  // one side from pixels of its own side does not depend on how high the cliff is.
+  // There is a cliff in the middle. The floor on either side is flat, so its pixels keep their area and the light
+  // gathered on one side from pixels of its own side does not depend on how high the cliff is.
   const auto beside_cliff = [](float height, bool two_materials) {
     MadeFrame made(8, 1, Camera::orthographic(1, 1), 0);
     for (std::size_t x = 0; x < 8; ++x) {
@@ -175,12 +175,12 @@ TEST_CASE("a steep pixel weighs as much as the surface it shows", "[surface_inte
   // Under a very wide profile R is constant, so that light is weighed by area.
   MadeFrame made(2, 1, Camera::orthographic(1, 1), 0);
   made.light[3] = 1;
-  made.depth = {0, 3};  // both tilted: area sqrt(10)
+  made.depth = {0, 3};  // Both are tilted and have the area sqrt(10).
   const Reference reference = run(made, gaussian_material(500, 1));
   CHECK(reference.scattered(0, 0) == Approx(0.5).epsilon(1e-4));
 
   MadeFrame corner(3, 1, Camera::orthographic(1, 1), 0);
-  corner.depth = {0, 0, 4};  // the last has only the steep side: area sqrt(17)
+  corner.depth = {0, 0, 4};  // The last one has only the steep side, and the area sqrt(17).
   corner.light[6] = 1;
   const Reference weighed = run(corner, gaussian_material(500, 1));
   CHECK(weighed.scattered(0, 0) == Approx(std::sqrt(17.0) / (2 + std::sqrt(17.0))).epsilon(1e-4));

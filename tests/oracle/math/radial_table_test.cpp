@@ -13,7 +13,8 @@ namespace dermis::oracle {
 
 namespace {
 
-/// From r^4 = 1/2: 8 - 6 t + 2 t^2, 4 - 2 t, 2 - 2 t + t^2, 1 - t; then 0 up to r^4 = 2^31. Green is tenfold.
+/// Returns a table whose octaves from r^4 = 1/2 are 8 - 6 t + 2 t^2, 4 - 2 t, 2 - 2 t + t^2, 1 - t, then 0 up to r^4 =
+/// 2^31. Green is ten times as much.
 RadialTable small_table() {
   RadialTable table = table_of_lines(-1, {8, 4, 2, 1, 0});
   set_parabola(table, 0, 8, -6, 2);
@@ -26,7 +27,7 @@ RadialTable small_table() {
 
 double at(double r4, int channel = 0) { return look_up(small_table(), channel, exact(r4)).value; }
 
-/// Any parabolas that meet.
+/// Returns a table of random parabolas that meet.
 RadialTable random_table(Random& random) {
   RadialTable table;
   table.first_exponent = random.integer(-12, 4);
@@ -40,7 +41,7 @@ RadialTable random_table(Random& random) {
   return table;
 }
 
-/// As a device does it.
+/// Reads a table as a device does.
 float float_look_up(const RadialTable& table, float r4, bool fused, bool just_before_end) {
   const auto bits = static_cast<int>(std::bit_cast<std::uint32_t>(r4));
   const int from_first = std::max(bits - ((127 + table.first_exponent) << 23), 0);

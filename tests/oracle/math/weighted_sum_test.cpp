@@ -1,4 +1,4 @@
-// The bounds of a weighted sum against float32 sums whose weights and values are as far off as they may be.
+// The bounds of a weighted sum hold for float32 sums whose weights and values are as far off as they may be.
 #include "oracle/math/weighted_sum.hpp"
 
 #include <algorithm>
@@ -13,12 +13,12 @@ namespace dermis::oracle {
 
 namespace {
 
-/// What is known of a float32 value, and one that a device may have.
+/// A value with its bound, and a float32 value that a device may have for it.
 struct Input {
   Bounded known;
   float held;
 
-  /// `error` relative to the value; the device's is at either end half the time.
+  /// `error` is relative to the value. Half the time the device's value lies at an end of the bound.
   Input(Random& random, double low, double high, double error) : held(static_cast<float>(random.uniform(low, high))) {
     const double off = error * std::abs(static_cast<double>(held));
     const double share = random.coin() ? random.uniform(-1, 1) : (random.coin() ? 1 : -1);
@@ -41,7 +41,7 @@ struct Taps {
   }
 };
 
-/// sum w (x - from), in random order and pairing, fused or not; `plus` is one more summand.
+/// Sums up w (x - from) in random order and pairing, fused or not; `plus` is one more summand.
 class FloatSum {
  public:
   FloatSum(const Taps& taps, Random& random) : taps_(taps), random_(random), fused_(random.coin()) {}
@@ -58,7 +58,7 @@ class FloatSum {
   }
 
  private:
-  /// In one or two partial sums.
+  /// Adds up in one or two partial sums.
   template <typename Step>
   float add_up(float plus, const Step& step) {
     float sums[] = {plus, 0};
@@ -78,7 +78,7 @@ class FloatSum {
   bool fused_;
 };
 
-/// The share of the bound that was used.
+/// Checks a value, and returns the share of the bound that its error uses.
 double check(float value, Bounded bounded) {
   const double error = std::abs(static_cast<double>(value) - bounded.value);
   if (!(error <= bounded.error)) FAIL_CHECK(value << " is " << error << " off, bound " << bounded.error);
@@ -133,7 +133,7 @@ TEST_CASE("a mean by hand", "[weighted_sum]") {
   sum.add(exact(-0.25), exact(-1));
   const Bounded mean = sum.mean({});
   CHECK(mean.value == 15);
-  // Three roundings of sum |w x|, two of the mean times sum |w|, both over sum w; six of the division.
+  // There are three roundings of sum |w x| and two of the mean times sum |w|, both over sum w, and six of the division.
   CHECK(mean.error == Approx(unit_roundoff * ((3 * 3.75 + 2 * 15 * 0.75) / 0.25 + 6 * 15)).epsilon(1e-5));
 }
 
@@ -144,7 +144,7 @@ TEST_CASE("a difference by hand", "[weighted_sum]") {
   sum.add(exact(-0.5), exact(1));
   CHECK(sum.about(exact(3), 0).value == 0.25 * 4 + 0.5 * 2);
   CHECK(sum.about(exact(3), 1).value == 3 + 0.25 * 4 + 0.5 * 2);
-  // Five roundings of |S x_p| + sum |w| (|x| + |x_p|).
+  // There are five roundings of |S x_p| + sum |w| (|x| + |x_p|).
   CHECK(sum.about(exact(3), 1).error == Approx(5 * unit_roundoff * (3 + 0.25 * 10 + 0.5 * 4)));
 }
 

@@ -1,4 +1,4 @@
-// The oracle's rounding bounds: no float32 evaluation may leave them, and they are not so wide as to hide a fault.
+// No float32 evaluation may leave the oracle's rounding bounds, which are not so wide as to hide a fault.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -18,7 +18,7 @@ namespace dermis::oracle {
 
 namespace {
 
-/// Checks all values, returns the largest share of a bound that was used.
+/// Checks all values, and returns the largest share of a bound that an error uses.
 double largest_share(const std::vector<float>& values, const Picture& truth, const Picture& bound) {
   REQUIRE(values.size() == truth.values.size());
   double share = 0;
@@ -104,7 +104,7 @@ TEST_CASE("bounds of several terms are narrow on ordinary frames", "[bounds]") {
 }
 
 TEST_CASE("the bound admits both sides of a decision that float32 cannot make", "[bounds]") {
-  // A kernel of exactly half a pixel, up to the rounding of 0.1.
+  // The kernel's radius is half a pixel, up to the rounding of 0.1.
   MadeFrame made(16, 1, Camera::orthographic(0.1, 0.1), 0);
   made.light[3 * 8] = 1;
   Material material = gaussian_material(20, 0.1);
@@ -117,14 +117,14 @@ TEST_CASE("the bound admits both sides of a decision that float32 cannot make", 
 }
 
 TEST_CASE("the bound admits that a pixel beside wider ones is left alone", "[bounds]") {
-  // Half a pixel again, but only the lit one: its block has taps all the same.
+  // Only the lit pixel's kernel is half a pixel wide, so that its block has taps all the same.
   MadeFrame made(16, 1, Camera::orthographic(0.1, 0.1), 0);
   made.light[3 * 8] = 1;
   made.mask.assign(16, 1);
   made.mask[8] = 0.5F;
   Material material = gaussian_material(20, 0.1);
   add_term(material.taps, gaussian_term(10), {{10, 10, 10}, {}});
-  material.taps.terms[1].scale = grey(0.5);  // so that nothing but being left alone gives back the light
+  material.taps.terms[1].scale = grey(0.5);  // Only a pixel that is left alone keeps its light.
   material.taps.radius_mm = 10;
   const Reference close = separable(made.frame(), std::span(&material, 1), {});
   CHECK(close.scattered(8, 0) < 0.9);
@@ -155,11 +155,8 @@ TEST_CASE("the bound admits either level", "[bounds]") {
 }
 
 TEST_CASE("the bound admits taps rotated or not", "[bounds]") {
-  // A pair of taps at 8 px where rotation ends; lit are the two that it reads when it is not rotated.
-  Material material = tiny_material();
-  material.taps.radius_mm = 8;
-  material.taps.terms[0].falloff = linear_table(0, {0.25});
-  material.taps.levels = {made_level(1, {8}, 1)};
+  // A pair of taps lies at 8 px, where rotation ends. The two pixels are lit that it reads if it is not rotated.
+  const Material material = pair_at_8_px();
   MadeFrame made(17, 17, Camera::orthographic(1, 1), 0);
   for (const std::size_t x : {0U, 16U}) made.light[3 * (17 * 8 + x)] = 1;
   Options options;
@@ -180,7 +177,7 @@ TEST_CASE("the sum over terms is rounded", "[bounds]") {
   add_term(material.taps, material.taps.terms[0], {{1, 1, 1}, {}});
   share_out(material.taps, 0.25);
   const double both = separable(made.frame(), std::span(&material, 1), {}).scattered_bound(2, 2);
-  // Once for the product and, at most, once for each term.
+  // The product is rounded once, and the sum at most once for each term.
   CHECK(both - alone == Approx(3 * 3 * 0x1p-24).epsilon(1e-3));
 }
 

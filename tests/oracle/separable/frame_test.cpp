@@ -1,4 +1,4 @@
-// What the separable filter makes of the images of a frame.
+// The separable filter and the images of a frame.
 #include <algorithm>
 #include <cmath>
 #include <limits>

@@ -1,4 +1,4 @@
-// The oracle over the library's own taps and profiles.
+// The oracle with the library's own taps and profiles.
 #include <algorithm>
 #include <cmath>
 #include <span>
@@ -24,8 +24,8 @@ Material material_of(const Profile& profile, int taps, int id = 1) {
   return material;
 }
 
-/// Largest distance of a filtered step from the profile's own edge, at about 4 px per mm: where flat weights are exact,
-/// at the px_per_mm of their level.
+/// Returns the largest distance of a filtered step from the profile's own edge, at about 4 px per mm: at the pixels per
+/// mm of a level, where its flat weights are exact.
 double edge_error(const Profile& profile, int taps) {
   const Material material = material_of(profile, taps);
   const int index = Taps::level_index(static_cast<float>(4 * material.taps.radius_mm));

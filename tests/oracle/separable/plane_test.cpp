@@ -1,4 +1,4 @@
-// What the separable filter makes of light on a plane, against the profile itself.
+// The separable filter on a plane, where the profile itself is the truth.
 #include <algorithm>
 #include <cmath>
 #include <span>
@@ -54,8 +54,8 @@ TEST_CASE("a step on a plane becomes the edge profile", "[separable]") {
   }
 }
 
-TEST_CASE("the px_per_mm scales the kernel in millimetres, whatever the camera", "[separable]") {
-  // A Gaussian of 1 mm on a plane, seen at 4 px per mm in x and 3 in y.
+TEST_CASE("the kernel has the same width in millimetres under every camera", "[separable]") {
+  // The plane is seen at 4 px per mm in x and 3 in y, and the Gaussian's sigma is 1 mm.
   constexpr int size = 43;
   const auto impulse = [](const Camera& camera, float depth, double mm_per_unit) {
     MadeFrame made(size, size, camera, 0);

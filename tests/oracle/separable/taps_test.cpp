@@ -1,4 +1,4 @@
-// The taps of the passes: where they lie and what they are worth.
+// The places and the weights of the passes' taps.
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -27,7 +27,7 @@ TEST_CASE("three pixels by hand", "[separable]") {
   }
 }
 
-TEST_CASE("the passes compose: across, then down", "[separable]") {
+TEST_CASE("the vertical pass takes what the horizontal one leaves", "[separable]") {
   MadeFrame made(2, 2, one_px_per_mm, 0);
   made.light[0] = 9;
   for (const MadeFrame& either : {made, never_flat(made)}) {
@@ -53,7 +53,7 @@ TEST_CASE("depth lengthens distances and the surface under a pixel", "[separable
 }
 
 TEST_CASE("perspective: size of a pixel and position by hand", "[separable]") {
-  // Focal length 4 px: at 4 mm a pixel is 1 mm, at 2 mm it is 1/2 mm.
+  // With a focal length of 4 px a pixel is 1 mm large at a depth of 4 mm, and 1/2 mm at 2 mm.
   MadeFrame made(2, 1, Camera::perspective(4, 4, 1, 0.5), 0);
   made.light[0] = 6;
   made.mm_per_unit = 2;
@@ -73,7 +73,7 @@ TEST_CASE("perspective: size of a pixel and position by hand", "[separable]") {
 }
 
 TEST_CASE("the mask makes the profile narrower", "[separable]") {
-  // k = 1/2: distances count double, weights double; 1 mm at k = 1/2 is r^2 = 4.
+  // At k = 1/2 distances and weights count double, so that 1 mm is r^2 = 4.
   Material material = tiny_material();
   material.taps.terms[0].falloff = linear_table(0, {0.25, 0.125, 0.0625});
   MadeFrame made = three_pixels();
@@ -82,15 +82,15 @@ TEST_CASE("the mask makes the profile narrower", "[separable]") {
   CHECK(reference.scattered(1, 0) == Approx((0.5 * 10 + 2 * 0.0625 * 101) / (0.5 + 4 * 0.0625)));
 }
 
-TEST_CASE("the centre is that of the pixel's own px_per_mm and width", "[separable]") {
+TEST_CASE("the centre is that of the pixel's own pixels per mm and width", "[separable]") {
   Material material = tiny_material();
   material.taps.radius_mm = 10;
-  material.taps.terms[0].centre =
-      made_table([](double root) { return std::pow(root, 4); }, 4);  // linear in the fourth power: exact
+  material.taps.terms[0].centre = made_table([](double root) { return std::pow(root, 4); },
+                                             4);  // The table is exact, as it is linear in the fourth power.
   MadeFrame made = three_pixels();
-  made.camera = Camera::orthographic(2, 2);  // r^2 = 1/4 to the next pixel, below the first octave: falloff 1/4
+  made.camera = Camera::orthographic(2, 2);  // The next pixel's r^2 = 1/4 lies below the first octave, at 1/4.
   made.mask = {1, 0.25F, 1};
-  // Centre: half a pixel is 1/4 mm, over k that is 1 mm. Taps: r^2 / k^2 = 4, the last value.
+  // Half a pixel is 1/4 mm, which is 1 mm over k, for the centre. For the taps r^2 / k^2 = 4, where the table ends.
   material.taps.terms[0].falloff = linear_table(0, {0.25, 0.125, 0.0625});
   const double tap = 0.5 * 0.0625 / 0.25;
   CHECK(run(made, material).scattered(1, 0) == Approx((1 * 10 + tap * 101) / (1 + 2 * tap)));
@@ -106,11 +106,11 @@ TEST_CASE("the level is chosen by the widest kernel of the block", "[separable]"
     const auto y = static_cast<float>(i / 33);
     MadeFrame::set_rgb(made.light, i, x * x, y * y, 0);
   }
-  CHECK(run(made, material).scattered(5, 0) == 25);  // radius 0.5 px: level 0, which has no taps
+  CHECK(run(made, material).scattered(5, 0) == 25);  // A radius of 0.5 px has level 0, without taps.
   made.camera = Camera::orthographic(1.0584, 1);
   CHECK(run(made, material).scattered(5, 0) == 25);
   made.camera = Camera::orthographic(1.0587, 1);
-  CHECK(run(made, material).scattered(5, 0) > 25.4);  // from 17/16 of half a pixel on, less 1/256: level 1
+  CHECK(run(made, material).scattered(5, 0) > 25.4);  // Level 1 begins at 17/16 of half a pixel, less 1/256.
 
   material.taps.radius_mm = 0.54;
   made.camera = one_px_per_mm;
@@ -137,11 +137,11 @@ TEST_CASE("a narrow pixel has no say in the level of its block", "[separable]") 
   made.material = {1, 1, 2};
   const Reference narrow = separable(made.frame(), materials, {});
   CHECK(narrow.touched.values == std::vector<double>{1, 1, 0});
-  CHECK(narrow.scattered(0, 0) == 1);  // level 0 has no taps
+  CHECK(narrow.scattered(0, 0) == 1);  // Level 0 has no taps.
   materials[1].taps.radius_mm = 0.5;
   const Reference wide = separable(made.frame(), materials, {});
   CHECK(wide.touched.values == std::vector<double>{1, 1, 1});
-  CHECK(wide.scattered(0, 0) > 1.5);  // level 1
+  CHECK(wide.scattered(0, 0) > 1.5);  // Level 1 has taps.
 }
 
 TEST_CASE("a kernel may be narrow along one axis only", "[separable]") {
@@ -174,21 +174,9 @@ TEST_CASE("constant light stays constant", "[separable]") {
 }
 
 TEST_CASE("rotated taps keep their distance and mirror each other", "[separable]") {
-  // One pair of taps at 8 px. Only the middle is wide enough to be scattered, so both passes read plain light from the
-  // others: x in red, x^2 in green, y^2 in blue.
-  Material material = tiny_material();
-  material.taps.radius_mm = 8;
-  material.taps.terms[0].falloff = linear_table(0, {0.25});
-  material.taps.levels = {made_level(1, {8}, 1)};
-  MadeFrame made(21, 21, one_px_per_mm, 0);
-  for (int y = -10; y <= 10; ++y) {
-    for (int x = -10; x <= 10; ++x) {
-      MadeFrame::set_rgb(made.light, static_cast<std::size_t>(21 * (y + 10) + x + 10), static_cast<float>(x),
-                         static_cast<float>(x * x), static_cast<float>(y * y));
-    }
-  }
-  made.mask.assign(made.pixels(), 0.01F);
-  made.mask[21 * 10 + 10] = 1;
+  // Both passes read plain light from all pixels but the middle one.
+  const Material material = pair_at_8_px();
+  const MadeFrame made = only_middle_wide([](int x, int y) { return std::array{x, x * x, y * y}; });
   Options options;
   options.jitter = 1;
   std::set<double> squares;
@@ -198,14 +186,14 @@ TEST_CASE("rotated taps keep their distance and mirror each other", "[separable]
     // The first pass gives half of its taps' light, of which the second keeps half and adds half of its own taps'.
     const double x2 = reference.scattered(10, 10, 1);
     const double y2 = reference.scattered(10, 10, 2);
-    CHECK(x2 + y2 == Approx(0.75 * 64).epsilon(0.17));  // 8 px, rounded to whole pixels on each axis
+    CHECK(x2 + y2 == Approx(0.75 * 64).epsilon(0.17));  // Taps are 8 px away, rounded to whole pixels on each axis.
     squares.insert(x2);
   }
   CHECK(squares.size() > 5);
   CHECK(*squares.begin() < 0.32 * 64);
   CHECK(*squares.rbegin() > 0.43 * 64);
 
-  options.jitter = 0.99;  // reaches 7.92 px: the pair is not rotated
+  options.jitter = 0.99;  // Rotation reaches 7.92 px and leaves out the pair.
   const Reference straight = run(made, material, options);
   CHECK(straight.scattered(10, 10, 1) == Approx(0.25 * 64));
   CHECK(straight.scattered(10, 10, 2) == Approx(0.5 * 64));

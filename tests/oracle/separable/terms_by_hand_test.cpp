@@ -1,4 +1,4 @@
-// Passes of several terms over a few pixels.
+// Passes of several terms over a few pixels, computed by hand.
 #include <array>
 #include <cstddef>
 #include <vector>
@@ -14,9 +14,7 @@ namespace dermis::oracle {
 
 namespace {
 
-constexpr TapWeight one_mm{{1, 1, 1}, {}};
-
-/// 3 x 3 pixels, light u(x) v(y) in red, so that each term's light is a product too.
+/// The light of 3 x 3 pixels is u(x) v(y) in red, so that each term's light is a product too.
 constexpr std::array<double, 3> u{1, 10, 100};
 constexpr std::array<double, 3> v{2, 3, 7};
 
@@ -28,10 +26,10 @@ MadeFrame nine_pixels() {
   return made;
 }
 
-/// The same seen two ways: by flat weights, or by those that the others are there.
-std::vector<MadeFrame> both_ways(const MadeFrame& made) { return {made, never_flat(made)}; }
+/// Returns the frame as it is, whose blocks are flat, and with curved blocks, whose weights are the same on a plane.
+std::vector<MadeFrame> flat_and_curved(const MadeFrame& made) { return {made, never_flat(made)}; }
 
-/// The mean with the weights `center` and, for both neighbours, `side`.
+/// Returns the mean with the weight `center` and, for both neighbours, `side`.
 double mean(const std::array<double, 3>& values, std::size_t i, double center, double side) {
   double weights = center;
   double sum = center * values[i];
@@ -57,7 +55,7 @@ TEST_CASE("two normalised terms by hand", "[terms]") {
   Material material = tiny_material();
   add_term(material.taps, tiny_term(0.125, 0.75), one_mm);
   share_out(material.taps, 0.25);
-  for (const MadeFrame& made : both_ways(nine_pixels())) {
+  for (const MadeFrame& made : flat_and_curved(nine_pixels())) {
     const Reference reference = run(made, material);
     for (std::size_t y = 0; y < 3; ++y) {
       for (std::size_t x = 0; x < 3; ++x) {
@@ -73,7 +71,7 @@ TEST_CASE("two normalised terms by hand", "[terms]") {
 TEST_CASE("a term may have less light in its centre", "[terms]") {
   Material material = tiny_material();
   material.taps.levels[0].centre_gain[0] = grey(0.5);
-  for (const MadeFrame& made : both_ways(three_pixels())) {
+  for (const MadeFrame& made : flat_and_curved(three_pixels())) {
     CHECK(run(made, material).scattered(1, 0) == Approx((0.25 * 10 + 0.25 * 101) / 0.75));
   }
 }
@@ -83,7 +81,7 @@ TEST_CASE("a difference term by hand: taps that are missing count as the pixel",
     Material material = tiny_material();
     add_term(material.taps, tiny_difference(0.125, sum), one_mm);
     material.taps.terms[1].scale = grey(0.5);
-    for (const MadeFrame& made : both_ways(nine_pixels())) {
+    for (const MadeFrame& made : flat_and_curved(nine_pixels())) {
       const Reference reference = run(made, material);
       for (std::size_t y = 0; y < 3; ++y) {
         for (std::size_t x = 0; x < 3; ++x) {
@@ -112,7 +110,7 @@ TEST_CASE("the centre of a difference term counts nothing", "[terms]") {
 }
 
 TEST_CASE("a weight may be a share of the first term's", "[terms]") {
-  // 1/8 from the term's own falloff, less a quarter of 1/4.
+  // The weight is 1/8 from the term's own falloff, less a quarter of 1/4.
   Material material = tiny_material();
   add_term(material.taps, tiny_difference(0.125, 0), {{1, 1, 1}, {-0.25F, -0.25F, -0.25F}});
   const Reference both = run(never_flat(nine_pixels()), material);
@@ -121,7 +119,7 @@ TEST_CASE("a weight may be a share of the first term's", "[terms]") {
     CHECK(both.scattered(static_cast<int>(x), 1) ==
           Approx(mean(u, x, 0.5, 0.25) * mean(v, 1, 0.5, 0.25) + second).epsilon(1e-14));
   }
-  // All of it and nothing else: the first term again, if the centre is the same.
+  // A term of the whole share and nothing else is the first term again, if the centre is the same.
   Material again = tiny_material();
   add_term(again.taps, tiny_term(0, 0.5), {{}, {1, 1, 1}});
   share_out(again.taps, 0.25);
@@ -130,14 +128,14 @@ TEST_CASE("a weight may be a share of the first term's", "[terms]") {
 
 TEST_CASE("without taps a term is its sum at one point", "[terms]") {
   for (const bool across : {true, false}) {
-    // Half a pixel to the mm across the passes that have taps: too narrow for a radius of 0.9 mm.
+    // One pass has taps. The other one, at half a pixel to the mm, is too narrow for a radius of 0.9 mm.
     MadeFrame made = three_pixels(!across);
     made.camera = across ? Camera::orthographic(1, 0.5) : Camera::orthographic(0.5, 1);
     Material material = tiny_material();
     material.taps.radius_mm = 0.9;
     add_term(material.taps, tiny_difference(0.125, 2), one_mm);
     material.taps.terms[1].scale = grey(0.5);
-    for (const MadeFrame& either : both_ways(made)) {
+    for (const MadeFrame& either : flat_and_curved(made)) {
       const Reference reference = run(either, material);
       for (std::size_t i = 0; i < 3; ++i) {
         const double second = 2 * difference(u, i, 2, 0.125);
@@ -148,7 +146,7 @@ TEST_CASE("without taps a term is its sum at one point", "[terms]") {
 }
 
 TEST_CASE("a pixel that is left alone gives its light to every term and keeps it", "[terms]") {
-  // The middle column is only read. To the second pass it shows its light, times the sum for a difference.
+  // The middle column is only read. It shows the vertical pass its light, times the sum for a difference.
   MadeFrame made = nine_pixels();
   made.mask.assign(9, 1);
   for (const std::size_t y : {0U, 1U, 2U}) made.mask[3 * y + 1] = 0.01F;
@@ -159,7 +157,7 @@ TEST_CASE("a pixel that is left alone gives its light to every term and keeps it
   CHECK(reference.touched.values == std::vector<double>{1, 0, 1, 1, 1, 1, 1, 0, 1});
   CHECK(reference.scattered(1, 0) == u[1] * v[0]);
   CHECK(reference.scattered_bound(1, 0) == 0);
-  // The middle scatters across, between two that do not.
+  // The middle pixel scatters horizontally, between two that do not.
   const double first = 0.5 * mean(u, 1, 0.5, 0.25) * v[1] + 0.25 * u[1] * (v[0] + v[2]);
   const double own = difference(u, 1, 2, 0.125) * v[1];
   const double second = 2 * own + 0.125 * (2 * u[1] * v[0] - own) + 0.125 * (2 * u[1] * v[2] - own);

@@ -17,9 +17,7 @@ namespace dermis::oracle {
 
 namespace {
 
-constexpr TapWeight one_mm{{1, 1, 1}, {}};
-
-/// A frame with relief, a mask that leaves some pixels alone, and random light.
+/// Returns a frame with relief, a mask that leaves some pixels alone, and random light.
 MadeFrame rough_frame(Random& random, int width, int height) {
   MadeFrame made(width, height, Camera::perspective(40, 60, 20, 6), 0);
   for (float& light : made.light) light = static_cast<float>(random.uniform(0, 2));
@@ -46,7 +44,7 @@ TEST_CASE("the first term's weight follows depth and width where others share it
   Material material = gaussian_material(0.5, 4);
   const Reference alone = run(made, material);
   const auto length = static_cast<float>(0.25);
-  // Half the first term's weight by length, half by share.
+  // Half of the first term's weight comes from the length, half from the share.
   add_term(material.taps, gaussian_term(0.5), {{length / 2, length / 2, length / 2}, {0.5F, 0.5F, 0.5F}});
   share_out(material.taps, 0.75);
   CHECK(compare(run(made, material).scattered, alone.scattered).max < 1e-13);
@@ -64,7 +62,7 @@ TEST_CASE("constant light stays constant if scale times sum squared adds to 1", 
     for (std::size_t t = 0; t < 3; ++t) {
       add_term(material.taps, gaussian_difference(0.4, sums[t], scales[t]), {{0.25F, 0.2F, 0.3F}, {-0.1F, 0, 0.5F}});
     }
-    // Of float32 scales the exact rest goes to the first term; what is lost is the rounding of that.
+    // The first term's scale makes up the sum of 1, but for its rounding to float32.
     double rest = 0.75;
     for (std::size_t t = 2; t < 5; ++t) {
       const double sum = static_cast<double>(material.taps.terms[t].sum[0]);
@@ -74,7 +72,7 @@ TEST_CASE("constant light stays constant if scale times sum squared adds to 1", 
     material.taps.terms[1].scale = grey(0.25);
     MadeFrame made = rough_frame(random, 41, 13);
     made.light.assign(made.light.size(), 0.75F);
-    for (const double aspect : {1.0, 0.05}) {  // seen so flat that there are no taps across
+    for (const double aspect : {1.0, 0.05}) {  // The second is so narrow that the horizontal pass has no taps.
       made.camera.scale_x = 40 * aspect;
       Options options;
       options.jitter = jitter;
@@ -136,7 +134,8 @@ TEST_CASE("materials of one and of several terms side by side", "[terms]") {
   Random random(14);
   MadeFrame made = rough_frame(random, 40, 12);
   for (std::size_t i = 0; i < made.pixels(); ++i) made.material.push_back(static_cast<float>(random.integer(0, 3)));
-  // Either left alone or wide enough for taps by itself, whatever it shares its block with; and one level for all.
+  // Every pixel is either left alone or wide enough for taps by itself, whatever it shares its block with; and all have
+  // one level.
   for (float& mask : made.mask) mask = mask < 0.2F ? 0.01F : mask;
   std::vector materials{gaussian_material(0.5, 4, 1), gaussian_material(0.3, 4, 2), gaussian_material(0.4, 4, 3)};
   add_term(materials[1].taps, gaussian_difference(0.5, 0, 0.5), {{0.25F, 0.25F, 0.25F}, {0.5F, 0.5F, 0.5F}});
@@ -160,20 +159,8 @@ TEST_CASE("materials of one and of several terms side by side", "[terms]") {
 }
 
 TEST_CASE("all terms of a pixel are rotated by the same angle", "[terms]") {
-  // One pair of taps at 8 px; only the middle scatters. Light x^2 in red, y^2 in green, and 0 in the middle.
-  Material material = tiny_material();
-  material.taps.radius_mm = 8;
-  material.taps.terms[0].falloff = linear_table(0, {0.25});
-  material.taps.levels = {made_level(1, {8}, 1)};
-  MadeFrame made(21, 21, one_px_per_mm, 0);
-  for (int y = -10; y <= 10; ++y) {
-    for (int x = -10; x <= 10; ++x) {
-      MadeFrame::set_rgb(made.light, static_cast<std::size_t>(21 * (y + 10) + x + 10), static_cast<float>(x * x),
-                         static_cast<float>(y * y), 1);
-    }
-  }
-  made.mask.assign(made.pixels(), 0.01F);
-  made.mask[21 * 10 + 10] = 1;
+  const Material material = pair_at_8_px();
+  const MadeFrame made = only_middle_wide([](int x, int y) { return std::array{x * x, y * y, 1}; });
   Options options;
   options.jitter = 1;
   for (options.seed = 0; options.seed < 10; ++options.seed) {
@@ -186,15 +173,15 @@ TEST_CASE("all terms of a pixel are rotated by the same angle", "[terms]") {
     share_out(two.taps, -1);
     const Reference both = run(made, two, options);
     for (int c = 0; c < 3; ++c) CHECK(both.scattered(10, 10, c) == Approx(one.scattered(10, 10, c)).epsilon(1e-14));
-    // Of a zero sum: what the others show to the second pass is zero, and the first pass gives their light / 2, half of
-    // which the second takes away.
+    // If the sum is zero, the others show zero to the vertical pass. The horizontal pass gives half of their light,
+    // half of which the vertical one takes away.
     two.taps.terms[0].scale = grey(0);
     two.taps.terms[1].scale = grey(1);
     two.taps.terms[1].sum = grey(0);
     const Picture zero_sum = run(made, two, options).scattered;
     const double x2 = zero_sum(10, 10, 0);
     const double y2 = zero_sum(10, 10, 1);
-    CHECK(x2 + y2 == Approx(-0.25 * 64).epsilon(0.17));  // 8 px, rounded to whole pixels on each axis
+    CHECK(x2 + y2 == Approx(-0.25 * 64).epsilon(0.17));  // Taps are 8 px away, rounded to whole pixels on each axis.
     CHECK(std::abs(zero_sum(10, 10, 2)) == 0);
   }
 }

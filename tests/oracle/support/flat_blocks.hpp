@@ -1,4 +1,4 @@
-// Materials and frames that show which blocks are flat.
+// Materials and frames that tell the class and the level of blocks.
 #pragma once
 
 #include <algorithm>
@@ -16,15 +16,15 @@
 
 namespace dermis::oracle {
 
-/// What a level has on a smooth block as its number.
+/// On a smooth block, this is added to the number of the level.
 constexpr int smooth = 1536;
 
-/// The kernel radius where a level begins, px.
+/// Returns the kernel radius where a level begins, px.
 inline double first_radius_px(int level) { return std::ldexp(0.5 * (1 + level % 16 / 16.0), level / 16); }
 
-/// A kernel of `radius_mm` with a pair of taps on the neighbours, on every level. On flat blocks they are worth 1/8 +
-/// the number of the level / 1024 each, on smooth ones 3/2 more, on others nothing, as they have no length. Another
-/// pair, as far away as the kernel goes, is worth nothing at all.
+/// Returns a kernel of `radius_mm` with a pair of taps on the neighbours, on every level. On flat blocks each of them
+/// weighs 1/8 + the number of the level / 1024, on smooth ones 3/2 more, on curved ones nothing, as they have no
+/// length. Another pair, as far away as the kernel reaches, weighs nothing at all.
 inline Material telling_material(double radius_mm, int id = 0) {
   Material material;
   material.id = id;
@@ -32,7 +32,7 @@ inline Material telling_material(double radius_mm, int id = 0) {
   material.taps.relative_width = {1, 1, 1};
   material.taps.terms.push_back(tiny_term(0.25, 0.5));
   for (int i = 0; i < 8 * 16; ++i) {
-    // The pixels are all larger than those of the levels, by as much as counts.
+    // All pixels are larger than those of the levels, by so much that the stretch is clamped.
     material.taps.levels.push_back(made_level(100, {1, std::max(2, static_cast<int>(first_radius_px(i)))}, 0));
     TapLevel& level = material.taps.levels.back();
     const auto on_neighbours = [](double weight) {
@@ -47,30 +47,30 @@ inline Material telling_material(double radius_mm, int id = 0) {
 constexpr int not_flat = -2;
 constexpr int no_taps = -1;
 
-/// The level for a kernel radius.
+/// Returns the level for a kernel radius.
 inline int level_for(double radius_px) {
   const double octave = std::floor(std::log2(2 * radius_px));
   return static_cast<int>(16 * octave + std::floor(16 * (2 * radius_px / std::exp2(octave) - 1)));
 }
 
-/// Sets the light to the square of the place along a pass: the second difference is 2 everywhere.
-inline void light_squares(MadeFrame& made, bool down) {
+/// Sets the light to the square of the place along a pass, so that its second difference is 2 everywhere.
+inline void light_squares(MadeFrame& made, bool is_vertical) {
   for (std::size_t i = 0; i < made.pixels(); ++i) {
     const auto width = static_cast<std::size_t>(made.width);
-    const auto place = static_cast<float>(down ? i / width : i % width);
+    const auto place = static_cast<float>(is_vertical ? i / width : i % width);
     MadeFrame::set_rgb(made.light, i, place * place, 0, 0);
   }
 }
 
-/// The level of the flat or smooth block in which a pixel lies, as told by the light of squares; not_flat if it keeps
-/// its light. Both neighbours must be of the same material.
-inline int told(const Reference& reference, int x, int y, bool down) {
-  const double place = down ? y : x;
+/// Returns the level of the flat or smooth block in which a pixel lies, as the light of squares tells it; not_flat if
+/// the pixel keeps its light. Both neighbours must be of the same material.
+inline int told(const Reference& reference, int x, int y, bool is_vertical) {
+  const double place = is_vertical ? y : x;
   const double gain = (reference.scattered(x, y) - place * place) / 2;
   return gain == 0 ? not_flat : static_cast<int>(std::lround((gain - 0.125) * 1024));
 }
 
-/// A frame and the same seen along the other axis, rows being columns.
+/// Returns the frame with rows and columns exchanged.
 inline MadeFrame transposed(const MadeFrame& made) {
   MadeFrame result = made;
   std::swap(result.width, result.height);
@@ -100,7 +100,7 @@ inline Reference run_as_is(const MadeFrame& made, std::span<const Material> mate
   return separable(made.frame(), materials, options);
 }
 
-/// A row of blocks of 1 px per mm, its depth in mm as a function of x.
+/// Returns a row of blocks at 1 px per mm, whose depth in mm is a function of x.
 inline MadeFrame row_of_blocks(int width, const std::function<double(int)>& depth_mm) {
   MadeFrame made(width, 5, one_px_per_mm);
   for (int i = 0; i < 5 * width; ++i) made.depth.push_back(static_cast<float>(depth_mm(i % width)));
@@ -108,7 +108,7 @@ inline MadeFrame row_of_blocks(int width, const std::function<double(int)>& dept
   return made;
 }
 
-/// A plane that jumps by `by_mm` at x = `at`.
+/// Returns a plane that jumps by `by_mm` at x = `at`.
 inline MadeFrame step(int width, int at, double by_mm) {
   return row_of_blocks(width, [=](int x) { return x < at ? 10 : 10 + by_mm; });
 }

@@ -1,4 +1,4 @@
-// Which shape a float32 device might take the blocks of a frame for. For the oracle's bounds.
+// The classification of blocks as a float32 device might compute it, to test the oracle's bounds.
 #pragma once
 
 #include <algorithm>
@@ -19,12 +19,12 @@
 struct FloatBlock {
   bool flat = false;
   bool smooth = false;
-  float px_per_mm = 0;  ///< if neither
-  float change_mm = 0;  ///< of position per pixel, if either
-  int shear = 0;        ///< if either
+  float px_per_mm = 0;  ///< if neither flat nor smooth
+  float change_mm = 0;  ///< of position per pixel, if flat or smooth
+  int shear = 0;        ///< if flat or smooth
 };
 
-/// Eighths of levels; none below half a pixel.
+/// Returns the level of a kernel radius in eighths, rounded to the nearest on a flat block; -1 below half a pixel.
 inline int float_step(float radius_px, bool flat, const dermis::Taps& taps) {
   if (radius_px < 0.5F) return -1;
   const std::uint32_t bits = std::bit_cast<std::uint32_t>(radius_px) - std::bit_cast<std::uint32_t>(0.5F);
@@ -94,7 +94,7 @@ class FloatBlocks {
     return block;
   }
 
-  /// Of the pixels of some blocks.
+  /// The depths and slopes of the pixels of some blocks.
   struct Steepness {
     Extremes z, steps[2];
     bool is_partial = false;  ///< a material covers only a part of some pixel
@@ -120,7 +120,7 @@ class FloatBlocks {
     return all;
   }
 
-  /// Along the ray through the middle of a block.
+  /// Returns the change of x or y with depth along the ray through the middle of a block.
   float ray(int i, const int* corner) const {
     const dermis::Camera& camera = made_.camera;
     if (camera.projection != dermis::Camera::Projection::perspective) return 0;
@@ -129,7 +129,7 @@ class FloatBlocks {
     return (static_cast<float>(corner[i] + 8) - center) / scale;
   }
 
-  /// Of a pixel at that depth; or what a part of the depth adds to it.
+  /// Returns the size of a pixel at the depth z, or, if z `is_part` of a depth, what it adds to the size.
   float size_mm(int i, float z, bool is_part) const {
     const bool perspective = made_.camera.projection == dermis::Camera::Projection::perspective;
     const auto scale = static_cast<float>(i == 0 ? made_.camera.scale_x : made_.camera.scale_y);
@@ -137,7 +137,7 @@ class FloatBlocks {
     return (perspective ? z : static_cast<float>(made_.mm_per_unit)) / scale;
   }
 
-  /// Squared, of the change of position per pixel, and by how much it varies.
+  /// Returns the squares of the change of position per pixel, and of how much it varies.
   std::array<float, 2> squared_change(const Steepness& its, const int* corner, float side) const {
     const float step = multiply_add(side, its.steps[1 - axis_].middle(), its.steps[axis_].middle());
     const float varying = multiply_add(std::fabs(side), its.steps[1 - axis_].half(), its.steps[axis_].half());

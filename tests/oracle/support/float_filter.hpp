@@ -1,5 +1,5 @@
-// The separable filter as a float32 device might compute it: the plain way, one rounding after the other. For the
-// oracle's bounds.
+// The separable filter as a float32 device might compute it, in plain code with one rounding after the other, to test
+// the oracle's bounds.
 #pragma once
 
 #include <algorithm>
@@ -16,11 +16,11 @@
 #include "oracle/support/float_surface.hpp"
 #include "oracle/support/made_frame.hpp"
 
-/// What a device is free to do.
+/// The choices that a device is free to make.
 struct FloatStyle {
-  bool fused = false;        ///< multiplies and adds with one rounding
-  bool differences = false;  ///< a difference term as sum w (x - x_p), not as sum w x - (sum w) x_p
-  bool backwards = false;    ///< the outer taps first, the last term first
+  bool fused = false;        ///< It multiplies and adds with one rounding.
+  bool differences = false;  ///< A difference term is sum w (x - x_p), not sum w x - (sum w) x_p.
+  bool backwards = false;    ///< It begins with the outer taps and the last term.
 };
 
 class FloatFilter {
@@ -43,7 +43,7 @@ class FloatFilter {
   std::vector<float> scattered;
   std::vector<float> result;
 
-  /// Of both passes.
+  /// Both count the blocks of both passes.
   int flat_blocks() const { return count(&FloatBlock::flat); }
   int smooth_blocks() const { return count(&FloatBlock::smooth); }
 
@@ -67,7 +67,7 @@ class FloatFilter {
     float t = static_cast<float>(from_first & 0x7FFFFF) / 0x1p23F;
     if (octave >= dermis::RadialTable::octaves) {
       octave = dermis::RadialTable::octaves - 1;
-      t = style_.backwards ? 1 : 1 - 0x1p-23F;  // the end of the last octave, or just before it
+      t = style_.backwards ? 1 : 1 - 0x1p-23F;  // Either is the end of the last octave, or just before it.
     }
     const auto& [a, b, bend] = table.coefficients[c];
     return multiply_add(t, multiply_add(t, bend[octave], b[octave]), a[octave]);
@@ -114,7 +114,7 @@ class FloatFilter {
     }
   }
 
-  /// One term; pixels whose material does not have it are not written.
+  /// Runs a pass of one term. Pixels whose material does not have the term keep the input.
   std::vector<float> pass(int axis, std::size_t term, const std::vector<float>& input) const {
     std::vector<float> output = input;
     for (int y = 0; y < made_.height; ++y) {
@@ -198,7 +198,7 @@ class FloatFilter {
     }
   }
 
-  /// The weight of the pixel itself in the first term.
+  /// Returns the weight of the pixel itself in the first term.
   float first_centre(int axis, const FloatPixel& pixel, const dermis::TapLevel& level, std::size_t c) const {
     const float half_width = level.centre_half_width_px * pixel.segment[axis] / pixel.k[c];
     return level.centre_gain[0][c] * look_up(taps_of(pixel).terms[0].centre, c, half_width * half_width);

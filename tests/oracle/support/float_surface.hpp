@@ -1,4 +1,4 @@
-// The pixels of a frame as a float32 device might see them. For the oracle's bounds.
+// The surface in the pixels of a frame as a float32 device might compute it, to test the oracle's bounds.
 #pragma once
 
 #include <algorithm>
@@ -17,8 +17,8 @@ struct FloatPixel {
   std::array<float, 3> position{};
   std::array<float, 2> px_per_mm{};
   std::array<float, 2> segment{};
-  int shear = 0;      ///< columns per row of the vertical pass, times 4096
-  float covered = 1;  ///< share
+  int shear = 0;      ///< of the vertical pass, 1/4096 column per row
+  float covered = 1;  ///< share that the material covers
   std::array<float, 3> k{};
   float spread = 0;
   std::array<float, 3> x{};
@@ -30,7 +30,7 @@ inline bool is_sheared(const MadeFrame& made, const dermis::Options& options) {
   return !made.depth.empty() && options.sheared && options.jitter == 0;
 }
 
-/// Between changes of position.
+/// Returns the shear in columns per row, given the changes of position along x and along y.
 inline float float_shear(const std::array<float, 3>& x, const std::array<float, 3>& y) {
   const float mixed = x[0] * y[0] + x[1] * y[1] + x[2] * y[2];
   return std::clamp(-mixed / (x[0] * x[0] + x[1] * x[1] + x[2] * x[2]), -1.0F, 1.0F);

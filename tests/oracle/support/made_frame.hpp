@@ -13,7 +13,7 @@ struct MadeFrame {
   double mm_per_unit = 1;
   std::vector<float> light, albedo, depth, material, mask, matte, beauty;
 
-  /// Constant light, everything else absent.
+  /// Has constant light and no other image.
   MadeFrame(int width_px, int height_px, const dermis::Camera& camera_, float light_value = 1)
       : width(width_px), height(height_px), camera(camera_), light(3 * pixels(), light_value) {}
 

@@ -9,7 +9,7 @@
 
 #include "dermis/tap_tables.hpp"
 
-/// The same in all channels.
+/// Returns the value for all channels.
 inline std::array<float, 3> grey(double value) {
   const auto v = static_cast<float>(value);
   return {v, v, v};
@@ -23,7 +23,8 @@ inline void set_parabola(dermis::RadialTable& table, int octave, double a, doubl
   }
 }
 
-/// Lines between those values at the ends of octaves, the first one at 2^first_exponent; then constant.
+/// Returns a table of lines between the values at the ends of octaves, the first one at r^4 = 2^first_exponent. Beyond
+/// the last value it is constant.
 inline dermis::RadialTable table_of_lines(int first_exponent, const std::vector<double>& values) {
   dermis::RadialTable table;
   table.first_exponent = first_exponent;
@@ -36,7 +37,8 @@ inline dermis::RadialTable table_of_lines(int first_exponent, const std::vector<
   return table;
 }
 
-/// f(r) for all channels up to r^4 = 2^last_exponent: exact at the ends and in the middle of each octave.
+/// Returns a table of f(r) for all channels up to r^4 = 2^last_exponent, exact at the ends and in the middle of each
+/// octave.
 inline dermis::RadialTable made_table(const std::function<double(double)>& f, int last_exponent) {
   dermis::RadialTable table;
   table.first_exponent = last_exponent - dermis::RadialTable::octaves;
@@ -48,7 +50,8 @@ inline dermis::RadialTable made_table(const std::function<double(double)>& f, in
   return table;
 }
 
-/// Those values at r^2 = 2^first_exponent and its doubles, nearly linear in r^2 between them; then constant.
+/// Returns a table of the values at r^2 = 2^first_exponent and its doubles, nearly linear in r^2 between them. Beyond
+/// the last value it is constant.
 inline dermis::RadialTable linear_table(int first_exponent, const std::vector<double>& values) {
   dermis::RadialTable table = made_table(
       [&](double r) {
@@ -66,7 +69,7 @@ inline dermis::RadialTable linear_table(int first_exponent, const std::vector<do
   return table;
 }
 
-/// The value of a table where the square of its argument is r2.
+/// Returns the value of a table where the square of its argument is r2.
 inline double value_of(const dermis::RadialTable& table, std::size_t c, double r2) {
   const double r4 = r2 * r2;
   const auto& [a, b, bend] = table.coefficients[c];

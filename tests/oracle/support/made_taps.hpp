@@ -12,15 +12,18 @@
 #include "dermis/tap_tables.hpp"
 #include "oracle/support/made_table.hpp"
 
-/// Light of a Gaussian within |x| < r.
+/// Returns the light of a Gaussian within |x| < r.
 inline double gaussian_strip(double r_mm, double sigma_mm) { return std::erf(r_mm / (sigma_mm * std::numbers::sqrt2)); }
 
-/// Light of a Gaussian per length of line.
+/// Returns the light of a Gaussian per length of line.
 inline double gaussian_line(double r_mm, double sigma_mm) {
   return std::exp(-r_mm * r_mm / (2 * sigma_mm * sigma_mm)) / (sigma_mm * std::sqrt(2 * std::numbers::pi));
 }
 
-/// One term, pairs of taps of the same length. Flat weights are still to be laid.
+/// The weight of a tap by the falloff, which stands for 1 mm.
+inline constexpr dermis::TapWeight one_mm{{1, 1, 1}, {}};
+
+/// Returns a level of one term, whose taps all have that length. Flat weights are still to be laid.
 inline dermis::TapLevel made_level(double px_per_mm, const std::vector<int>& offsets_px, double length_mm) {
   const dermis::TapWeight weight{grey(length_mm), {}};
   return {static_cast<float>(px_per_mm), 0.5F, {grey(1)}, offsets_px, {offsets_px.size(), weight}, {}, {}, {}};
@@ -28,11 +31,11 @@ inline dermis::TapLevel made_level(double px_per_mm, const std::vector<int>& off
 
 inline double flat_quantum(double weight) { return std::round(weight * 0x1p24) * 0x1p-24; }
 
-/// A number for each pair in a term and a channel.
+/// A function of a pair in a term and a channel.
 using PairNumber = std::function<double(std::size_t pair, std::size_t term, std::size_t c)>;
 
-/// Gives a level flat weights: those of the pairs in a term and a channel; the centre's make up the sum of 1, or are
-/// nonsense where they count nothing. A surface that bends changes nothing.
+/// Gives a level flat weights: the pairs have `weight`, and the centre makes up the sum of 1, or is nonsense where it
+/// must not count. The weights are the same on a smooth block.
 inline void lay_flat(dermis::TapLevel& level, const std::vector<dermis::Term>& terms, const PairNumber& weight) {
   std::vector<std::array<float, 3>> weights((1 + level.offsets_px.size()) * terms.size());
   for (std::size_t t = 0; t < terms.size(); ++t) {
@@ -46,12 +49,12 @@ inline void lay_flat(dermis::TapLevel& level, const std::vector<dermis::Term>& t
       weights[t][c] = terms[t].normalised ? static_cast<float>(rest) : 7;
     }
   }
-  level.flat_weights.fill(weights);  // of every part
+  level.flat_weights.fill(weights);  // Every part has the same weights.
   level.stretch_weights.assign(weights.size(), {});
   level.skew_weights.assign(level.offsets_px.size() * terms.size(), {});
 }
 
-/// Gives a level what its flat weights change by on a smooth block.
+/// Gives a level the changes of its flat weights with stretch and skew on a smooth block.
 inline void lay_smooth(dermis::TapLevel& level, std::size_t terms, const PairNumber& stretch, const PairNumber& skew) {
   for (std::size_t t = 0; t < terms; ++t) {
     for (std::size_t c = 0; c < 3; ++c) {
@@ -67,11 +70,11 @@ inline void lay_smooth(dermis::TapLevel& level, std::size_t terms, const PairNum
   }
 }
 
-/// Gives all levels the flat weights that the others are on a plane parallel to the screen whose pixels have the
-/// level's px_per_mm, and what these change by if the pixels are larger.
+/// Gives all levels flat weights that equal those by distance on a plane parallel to the screen at the level's pixels
+/// per mm, and the changes of these if pixels are larger.
 inline void lay_flat(dermis::Taps& taps) {
   for (dermis::TapLevel& level : taps.levels) {
-    // Of a tap where lengths and distances are `longer`.
+    // Returns the weight of a tap where lengths and distances are multiplied by `longer`.
     const std::function<double(std::size_t, std::size_t, std::size_t, double)> tap =
         [&](std::size_t pair, std::size_t t, std::size_t c, double longer) {
           const dermis::TapWeight& weight = level.weights[pair * taps.terms.size() + t];
@@ -98,7 +101,7 @@ inline void lay_flat(dermis::Taps& taps) {
   }
 }
 
-/// Adds a term whose pairs of taps all have that weight.
+/// Adds a term whose pairs of taps all have `weight`.
 inline void add_term(dermis::Taps& taps, const dermis::Term& term, const dermis::TapWeight& weight,
                      double centre_gain = 1) {
   taps.terms.push_back(term);
@@ -118,7 +121,7 @@ inline void share_out(dermis::Taps& taps, double s) {
   taps.terms[1].scale = grey(s);
 }
 
-/// The falloff and the centre of a Gaussian, scale 1, normalised.
+/// Returns the normalised term of a Gaussian, with scale 1.
 inline dermis::Term gaussian_term(double sigma_mm) {
   const int last = 2 * static_cast<int>(std::ceil(std::log2(8 * sigma_mm)));
   const double end_mm = std::ldexp(1.0, last / 2);
@@ -128,7 +131,7 @@ inline dermis::Term gaussian_term(double sigma_mm) {
   return term;
 }
 
-/// A Gaussian whose taps lie on every pixel up to 6 sigma, for one px_per_mm (a single level).
+/// Returns a Gaussian whose only level, for `px_per_mm`, has taps on every pixel up to 6 sigma.
 inline dermis::Taps gaussian_taps(double sigma_mm, double px_per_mm) {
   dermis::Taps taps;
   taps.radius_mm = 3.29 * sigma_mm;
@@ -141,7 +144,7 @@ inline dermis::Taps gaussian_taps(double sigma_mm, double px_per_mm) {
   return taps;
 }
 
-/// A falloff that is one value up to r = 1 mm and nothing from r^2 = 4 on, a centre that is one value.
+/// Returns a term whose falloff is constant up to r = 1 mm and 0 from r^2 = 4 on, and whose centre is constant.
 inline dermis::Term tiny_term(double falloff, double centre) {
   dermis::Term term;
   term.falloff = linear_table(0, {falloff, falloff / 2, 0});
@@ -149,7 +152,7 @@ inline dermis::Term tiny_term(double falloff, double centre) {
   return term;
 }
 
-/// A difference term with the falloff of a tiny one.
+/// Returns a difference term with the falloff of a tiny one.
 inline dermis::Term tiny_difference(double falloff, double sum) {
   dermis::Term term = tiny_term(falloff, 0);
   term.normalised = false;
@@ -157,8 +160,8 @@ inline dermis::Term tiny_difference(double falloff, double sum) {
   return term;
 }
 
-/// Weights that can be followed by hand at one pixel to the mm: 1/2 for the centre, 1/4 for the next pixel, 1/8 at r^2
-/// = 2, nothing from r^2 = 4 on.
+/// Returns taps whose weights can be followed by hand at 1 px per mm: 1/2 for the centre, 1/4 for the next pixel, 1/8
+/// at r^2 = 2, and 0 from r^2 = 4 on.
 inline dermis::Taps tiny_taps() {
   dermis::Taps taps;
   taps.radius_mm = 1;
@@ -169,7 +172,7 @@ inline dermis::Taps tiny_taps() {
   return taps;
 }
 
-/// A Gaussian material for both methods.
+/// Returns a Gaussian material for the separable filter and the surface integral.
 inline dermis::oracle::Material gaussian_material(double sigma_mm, double px_per_mm, int id = 0) {
   dermis::oracle::Material material;
   material.id = id;

@@ -1,4 +1,4 @@
-// Random frames, materials and options for the oracle's bounds.
+// Random frames, materials and options, to test the oracle's bounds.
 #pragma once
 
 #include <array>
@@ -16,7 +16,7 @@
 
 namespace dermis::oracle {
 
-/// A Gaussian with a level table of levels for kernels of 1/2 to 32 px, taps on every pixel or every second.
+/// Returns a Gaussian with levels for kernels of 1/2 to 32 px, whose taps lie `step_px` apart.
 inline Material level_material(double sigma_mm, int id, int step_px) {
   Material material = gaussian_material(sigma_mm, 1, id);
   Taps& taps = material.taps;
@@ -36,12 +36,13 @@ inline Material level_material(double sigma_mm, int id, int step_px) {
   return material;
 }
 
-/// Flat weights that have nothing to do with the others.
+/// Gives all levels random flat weights, which have nothing to do with those by distance.
 inline void lay_random_flat(Random& random, Taps& taps) {
   for (TapLevel& level : taps.levels) {
     const auto taps_of_level = static_cast<double>(2 * level.offsets_px.size() + 1);
     lay_flat(level, taps.terms, [&](std::size_t, std::size_t t, std::size_t) {
-      return random.uniform(taps.terms[t].normalised ? 0 : -1, 1) / taps_of_level;  // weights of a mean do not cancel
+      return random.uniform(taps.terms[t].normalised ? 0 : -1, 1) /
+             taps_of_level;  // The weights of a mean do not cancel.
     });
     const PairNumber any = [&](std::size_t, std::size_t, std::size_t) {
       return random.uniform(-0.2, 0.2) / taps_of_level;
@@ -50,7 +51,7 @@ inline void lay_random_flat(Random& random, Taps& taps) {
   }
 }
 
-/// Adds up to `most` terms of either kind, each of other taps on each level.
+/// Adds up to `most` terms, means or differences, whose taps differ from level to level.
 inline void add_terms(Random& random, Taps& taps, double sigma_mm, int most) {
   const auto any = [&](double low, double high) {
     std::array<float, 3> values{};
@@ -67,7 +68,7 @@ inline void add_terms(Random& random, Taps& taps, double sigma_mm, int most) {
     for (TapLevel& level : taps.levels) {
       const double length = random.uniform(0, 1) * static_cast<double>(1 / level.px_per_mm);
       for (std::size_t i = terms - 1; i < level.weights.size(); i += terms) {
-        // Weights of a mean do not cancel.
+        // The weights of a mean do not cancel.
         level.weights[i].length_mm = any(term.normalised ? 0 : -length, length);
         if (shares) level.weights[i].share = any(term.normalised ? 0 : -1, 1);
       }
@@ -83,7 +84,7 @@ inline std::vector<float> noise(Random& random, std::size_t count, double low, d
   return values;
 }
 
-/// Tilted, bent, rough, broken, or none of it: depths in scene units about a distance in mm.
+/// Adds a surface about a distance, which may be tilted, bent, rough, broken, or none of it.
 inline void add_depth(Random& random, MadeFrame& made, double distance_mm, double pixel_mm) {
   const double longest_px = std::max(made.width, made.height);
   const double largest_slope = std::min(1.5 * pixel_mm, 0.3 * distance_mm / longest_px);
@@ -103,7 +104,7 @@ inline void add_depth(Random& random, MadeFrame& made, double distance_mm, doubl
   }
 }
 
-/// `plain`: without a mask, so that blocks may be flat.
+/// A `plain` frame has no mask, so that blocks may be flat.
 inline MadeFrame random_frame(Random& random, int width, int height, bool plain) {
   const double pixels_per_mm = random.uniform(1, 6);
   const bool perspective = random.coin();
@@ -118,7 +119,7 @@ inline MadeFrame random_frame(Random& random, int width, int height, bool plain)
   made.light = noise(random, 3 * made.pixels(), 0, random.coin() ? 1 : 1000);
   if (!plain && random.coin()) made.mask = noise(random, made.pixels(), 0.02, 1.2);
   if (random.integer(0, 3) == 0) {
-    // Some covered in part, or not at all, or by more than there is; in the left half only.
+    // Some pixels of the left half are covered in part, or not at all, or by more than 1.
     made.matte.assign(made.pixels(), 1);
     for (std::size_t i = 0; i < made.pixels(); ++i) {
       const bool is_left = 2 * (static_cast<int>(i) % made.width) < made.width;
