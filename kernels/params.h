@@ -92,7 +92,7 @@ struct FrameLayouts {
   struct ImageParams scattered, result;
 };
 
-// What a run does; each member is 0 or 1.
+// The choices of a run; each member is 0 or 1.
 struct RunFlags {
   int writes_scattered;
   int writes_result;
@@ -411,7 +411,7 @@ struct DiscParams {
   float inner_mm[2][DISC_STARTS];  // no sample of the set lies nearer, nor does what it stands for
 };
 
-// How many samples a pixel reads.
+// The number of samples that a pixel reads.
 struct DiscCounts {
   int samples[2];  // as in DiscParams; the first is 0 if all pixels have as many
   int seeds;       // the result is the mean over so many
@@ -425,7 +425,7 @@ struct DiscCounts {
 // Lanes of the states of a recursion: 8 times the pole pair, plus 4 times the function, plus the channel.
 #define STATES 16
 
-// What becomes of the light in a block of texels, by channel.
+// The fate of the light in a block of texels, by channel.
 #define LIT_EMPTY 0  // no texel of an object
 #define LIT_DARK 1   // no light
 #define LIT_BRIGHT 2

@@ -109,14 +109,13 @@ FORCED_INLINE PixelRow read_row(const struct FrameParams* f, const FrameInputs* 
 
 // Fetches a row of a later block: processors do not foresee sixteen rows at a time.
 static inline void fetch_row_ahead(const struct FrameParams* f, const FrameInputs* in, int x, int y) {
-  const int later_x = x + BLOCKS_AHEAD * BLOCK;
 #if HAS_MATERIAL
   const Row ids = row_of(in->material, &in->layouts->material, f->width, y, 0);
-  fetch_ahead(ids.at, ids.pixel_stride, later_x);
+  fetch_ahead(ids.at, ids.pixel_stride, x + BLOCKS_AHEAD * BLOCK);
 #endif
 #if HAS_DEPTH
   const Row depth = row_of(in->depth, &in->layouts->depth, f->width, y, 0);
-  fetch_ahead(depth.at, depth.pixel_stride, later_x);
+  fetch_ahead(depth.at, depth.pixel_stride, x + BLOCKS_AHEAD * BLOCK);
 #endif
 }
 
@@ -183,7 +182,7 @@ FORCED_INLINE void see_row(Seen* seen, vfloat depth, vfloat above, int is_first)
 #endif
 }
 
-// Whether no pixel of a block of one material is narrow.
+// Tells whether no pixel of a block of one material is narrow.
 static inline int is_wide(const Seen* seen, const struct FrameParams* f, global const struct MaterialParams* its) {
   // Sizes grow with depth.
   const float high = highest(seen->depth.high);
@@ -203,7 +202,6 @@ static inline void finish_wide(Seen* seen, const struct FrameParams* f, int mate
 // Adds a row of any block. Returns its material with NARROW_BIT where pixels are narrow.
 static inline vint see_mixed_row(Seen* seen, const struct FrameParams* f, global const struct MaterialParams* materials,
                                  const PixelRow* row, const PixelRow* above) {
-  const vint has_next = (vint)(-1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, 0);
   const vfloat nothing = (vfloat)(INFINITY);
   const vint m = row->material;
   const vfloat z = row->depth;
@@ -231,6 +229,7 @@ static inline vint see_mixed_row(Seen* seen, const struct FrameParams* f, global
     seen->size_y = lower(seen->size_y, select(nothing, PIXEL_WIDTH ? size_y_mm / widest : size_y_mm, scatters));
   }
 #if HAS_DEPTH && !PIXEL_WIDTH && !JITTER
+  const vint has_next = (vint)(-1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, 0);
   widen(&seen->depth, z, has_material);
   const vint next_material = m.s123456789abcdeff;
   widen(&seen->along_x, z.s123456789abcdeff - z, has_material & has_next & AS_MASK(next_material == m));

@@ -1,4 +1,5 @@
-// How much of a pixel its material covers, and how an albedo or a mask scales the width of the profile.
+// The share of a pixel that its material covers, and the factor by which an albedo or a mask scales the width of the
+// profile.
 #include "frame/image.h"
 
 // Christensen and Burley 2015, eq. 6.

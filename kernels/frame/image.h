@@ -84,7 +84,7 @@ FORCED_INLINE vfloat read_values(Row row, int x) {
   return read_scattered(row, x);
 }
 
-// Whether an image's channels are planes of floats.
+// Tells whether an image's channels are planes of floats.
 static inline int is_planar(const struct ImageParams* p) { return p->format == FORMAT_F32 && p->pixel_stride == 4; }
 
 // The three channels of a row.
@@ -113,7 +113,8 @@ FORCED_INLINE void fetch_rgb_ahead(const RgbRow* row, int x) {
 }
 
 #if V == 16
-// Whether the channels of a pixel follow each other, and so do the pixels, which may have more channels than three.
+// Tells whether the channels of a pixel follow each other, and so do the pixels, which may have more channels than
+// three.
 static inline int is_interleaved(const RgbRow* row, int format, int value_bytes, int channels) {
   return row->r.format == format && row->r.pixel_stride == channels * value_bytes &&
          row->g.at - row->r.at == value_bytes && row->b.at - row->r.at == 2 * value_bytes;

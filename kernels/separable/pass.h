@@ -110,7 +110,7 @@ FORCED_INLINE vrgb finish_term(global const struct TermParams* term, vrgb light,
   return multiply_add(missing, own, light);
 }
 
-// Whether some of the V pixels an offset away lie in the frame.
+// Tells whether some of the V pixels an offset away lie in the frame.
 FORCED_INLINE int in_frame(const struct FrameParams* f, const Pass* s, int x, int y, int offset) {
   const int at_x = tap_x(s, x, offset);
   const int at_y = y + s->y_step * offset;

@@ -65,7 +65,7 @@ static inline LightSummary scatter_rows(const Windows* w, const TileRun* run) {
   return light_summary;
 }
 
-// Whether a block has changed that the light of a tile may depend on.
+// Tells whether a block has changed that the light of a tile may depend on.
 static inline int any_changed(const Windows* w, const TileRun* run) {
   const struct FrameParams* f = run->f;
   // The class of a block is that of the surface within 9/8 of its taps.

@@ -13,7 +13,7 @@ constexpr int round_up(int value, int multiple) { return parts_of(value, multipl
 struct FrameSize {
   int width, height;
 
-  /// Of planes as large as the frame, elements.
+  /// A row, and all rows, of a plane as large as the frame, elements.
   int stride() const { return round_up(width, BLOCK) + 2 * PADDING; }
   std::size_t plane() const { return static_cast<std::size_t>(stride()) * height; }
   int blocks_x() const { return parts_of(width, BLOCK); }

@@ -15,7 +15,7 @@ struct RunSizes {
   std::vector<std::size_t> method_bytes;  ///< of the buffers of the method
 
   std::size_t deferred_bytes() const { return 3 * frame.plane() * sizeof(float); }
-  /// Of all buffers, with or without that of deferred light.
+  /// The sum over all buffers, with or without that of deferred light.
   std::size_t bytes(bool defers) const;
 
   bool operator==(const RunSizes&) const = default;
