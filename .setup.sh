@@ -13,6 +13,9 @@ mkdir -p "$logs"
 export POCL_CACHE_DIR=${POCL_CACHE_DIR:-$PWD/build/pocl-cache}
 mkdir -p "$POCL_CACHE_DIR"
 
+# Where a run of apt holds its lock, the next one waits for it.
+apt_wait=(-o DPkg::Lock::Timeout=600)
+
 # say TEXT...: a line for the person who watches.
 say() { printf '%s\n' "$*"; }
 
@@ -34,10 +37,13 @@ install_packages() {
   fi
   say "installing ${missing[*]}"
   {
-    "${as_root[@]}" apt-get update -qq &&
-      "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -qq -y --no-install-recommends "${missing[@]}"
+    "${as_root[@]}" apt-get "${apt_wait[@]}" update -qq &&
+      "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get "${apt_wait[@]}" install -qq -y --no-install-recommends "${missing[@]}"
   } </dev/null >"$logs/apt.log" 2>&1 || {
     tail -n 30 "$logs/apt.log" >&2
     return 1
   }
 }
+
+# configure: both scripts build the same files with the same flags, so that the second compiles only what is new.
+configure() { cmake --preset release -DDERMIS_WERROR=ON; }

@@ -1,28 +1,27 @@
-// dermis-bench: time against error, of dermis and of others.
+// dermis-bench measures time against error, of dermis and of others.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdlib>
-#include <fstream>
-#include <functional>
 
 #include "dermis/error.hpp"
-#include "measure/matching.hpp"
+#include "files/output_file.hpp"
+#include "measure/measurement.hpp"
 #include "measure/registry.hpp"
 #include "measure/start_up.hpp"
 #include "paper/paper.hpp"
-#include "report/picture_report.hpp"
 #include "report/plots.hpp"
+#include "report/progress_bar.hpp"
 #include "report/report.hpp"
-#include "stress/stress.hpp"
-#include "support/progress.hpp"
+#include "report/stress_report.hpp"
 
 namespace {
 
 using dermis::Error;
 using dermis::ErrorCode;
 namespace bench = dermis::bench;
+namespace program = dermis::program;
 
 struct Arguments {
   std::string picture;
@@ -43,92 +42,65 @@ struct Arguments {
   bool start_up_child = false;
 };
 
-/// A file that is opened before the measurement, so that a wrong name costs no time.
-class OutputFile {
- public:
-  OutputFile(std::string_view option, const std::string& path) : option_(option), path_(path) {
-    if (path.empty()) return;
-    file_.open(path);
-    check();
-  }
-
-  void write(const std::string& text) {
-    if (path_.empty()) return;
-    file_ << text << std::flush;
-    check();
-  }
-
- private:
-  void check() const {
-    if (!file_) throw Error(ErrorCode::output, option_, path_, "a file to write");
-  }
-
-  std::string option_, path_;
-  std::ofstream file_;
-};
-
-bench::Subject subject_of(const Arguments& arguments) {
-  std::vector<int> ids;
-  std::vector<std::string> names;
+std::vector<bench::NamedMaterial> materials_of(const Arguments& arguments) {
+  std::vector<bench::NamedMaterial> materials;
   for (const std::string& text : arguments.materials) {
     const auto equals = text.find('=');
     if (equals == std::string::npos || equals == 0 || text.find_first_not_of("0123456789") != equals || equals > 5) {
       throw Error(ErrorCode::usage, "--material", text, "ID=PRESET");
     }
-    ids.push_back(std::stoi(text.substr(0, equals)));
-    names.push_back(text.substr(equals + 1));
+    materials.push_back({std::stoi(text.substr(0, equals)), text.substr(equals + 1)});
   }
-  return bench::load_subject(arguments.picture, arguments.mm_per_unit, ids, names);
+  return materials;
 }
 
 void say(const std::string& text) { fmt::print(stderr, "dermis-bench: {}\n", text); }
 
-template <class Named, class Name>
-void print_names(const std::vector<Named>& cases, Name name) {
-  for (const Named& what : cases) fmt::print("{}\n", std::invoke(name, what));
-}
-
-void measure_picture(const Arguments& arguments) {
-  const auto cases = bench::matching(bench::picture_cases(), &bench::PictureCase::name, arguments.filter);
-  if (arguments.list) return print_names(cases, &bench::PictureCase::name);
-  if (!arguments.csv.empty()) throw Error(ErrorCode::usage, "--csv", "a picture", "no picture: --json has its rows");
-  OutputFile json("--json", arguments.json);
-  if (!arguments.plot.empty()) bench::prepare_plots(arguments.plot);
-  const dermis::Device device = dermis::Device::open(arguments.device, arguments.threads);
-  const bench::Subject subject = subject_of(arguments);
-  constexpr int default_rounds = 15;
-  const auto measurement =
-      bench::measure_picture(device, subject, cases, arguments.rounds.value_or(default_rounds), say);
-  fmt::print("{}", bench::table_of(measurement, subject, device.info()));
-  json.write(bench::json_of(measurement, subject, device.info()));
-  if (!arguments.plot.empty()) {
-    bench::plot(std::filesystem::path(arguments.plot) / "picture_time_error.svg", measurement, subject, device.info());
+bench::Setup setup_of(const Arguments& arguments) {
+  bench::Setup setup{.device = arguments.device, .threads = arguments.threads, .min_ms = arguments.min_ms};
+  if (!arguments.picture.empty()) {
+    setup.picture = bench::read_picture(arguments.picture, arguments.mm_per_unit, materials_of(arguments));
+    setup.rounds = 15;
+    setup.enough_ms = HUGE_VAL;
   }
+  if (arguments.rounds) setup.rounds = *arguments.rounds;
+  return setup;
 }
 
-void measure_made_scenes(const Arguments& arguments) {
-  if (arguments.threads > 0) {
+void measure(const Arguments& arguments) {
+  const bool is_picture = !arguments.picture.empty();
+  if (!is_picture && arguments.threads > 0) {
     throw Error(ErrorCode::usage, "--threads", std::to_string(arguments.threads), "a picture; cases name their own");
   }
-  const auto cases = bench::matching(arguments.all ? bench::all_cases() : bench::default_cases(), &bench::Case::name,
-                                     arguments.filter);
-  if (arguments.list) return print_names(cases, &bench::Case::name);
-  if (arguments.all && arguments.filter.empty()) {
+  std::vector<bench::Case> cases = bench::matching(is_picture      ? bench::picture_cases()
+                                                   : arguments.all ? bench::all_cases()
+                                                                   : bench::default_cases(),
+                                                   arguments.filter);
+  if (arguments.list) {
+    for (const bench::Case& what : cases) fmt::print("{}\n", what.name());
+    return;
+  }
+  if (!is_picture && arguments.all && arguments.filter.empty()) {
     throw Error(ErrorCode::usage, "--all", fmt::format("{} cases", cases.size()), "a --filter, or --list");
   }
-  OutputFile json("--json", arguments.json);
-  OutputFile csv("--csv", arguments.csv);
+  if (!arguments.json.empty()) program::check_writable("--json", arguments.json);
+  if (!arguments.csv.empty()) program::check_writable("--csv", arguments.csv);
   if (!arguments.plot.empty()) bench::prepare_plots(arguments.plot);
-  bench::Effort effort{.min_ms = arguments.min_ms};
-  if (arguments.rounds) effort.rounds = *arguments.rounds;
+  const bench::Setup setup = setup_of(arguments);
+  if (is_picture) {
+    const std::vector<bench::Case> references = bench::picture_references();
+    cases.insert(cases.begin(), references.begin(), references.end());
+    for (bench::Case& what : cases) what.scene = setup.picture->spec;
+  }
   bench::Measurement measurement;
   {
-    bench::Progress progress;
-    measurement = bench::measure_cases(cases, arguments.device, effort, std::ref(progress));
+    program::ProgressBar progress("dermis-bench");
+    measurement = bench::measure_cases(cases, setup,
+                                       [&](double share, const std::string& what) { progress.update(share, what); });
   }
   fmt::print("{}", bench::table_of(measurement));
-  json.write(bench::json_of(measurement));
-  csv.write(bench::csv_of(measurement));
+  if (!arguments.json.empty()) program::write_text("--json", arguments.json, bench::json_of(measurement));
+  if (!arguments.csv.empty()) program::write_text("--csv", arguments.csv, bench::csv_of(measurement));
   if (!arguments.plot.empty()) bench::draw_plots(arguments.plot, measurement);
 }
 
@@ -143,12 +115,8 @@ void run(const Arguments& arguments) {
     fmt::print("{}", bench::stress_report(device, arguments.plot, say));
     return;
   }
-  if (!arguments.paper.empty()) {
-    fmt::print("{}", bench::reproduce_paper(arguments.paper, say));
-  } else if (arguments.picture.empty()) {
-    measure_made_scenes(arguments);
-  }
-  if (!arguments.picture.empty()) measure_picture(arguments);
+  if (!arguments.paper.empty()) fmt::print("{}", bench::reproduce_paper(arguments.paper, say));
+  if (arguments.paper.empty() || !arguments.picture.empty()) measure(arguments);
 }
 
 void add_options(CLI::App& app, Arguments& arguments) {
@@ -174,7 +142,7 @@ void add_options(CLI::App& app, Arguments& arguments) {
   app.add_option("--json", arguments.json, "write the measurement here");
   app.add_option("--csv", arguments.csv, "write the rows here");
   app.add_option("--plot", arguments.plot, "draw time against error, width, coverage and pixels into this folder");
-  app.add_flag("--stress", arguments.stress, "instead: a table of what becomes of numbers that no picture should hold");
+  app.add_flag("--stress", arguments.stress, "instead: a table of cases with numbers that no picture should hold");
   app.add_option("--paper", arguments.paper,
                  "write the claims of Jimenez et al. 2015 beside what is measured into this folder: table.md, "
                  "claims.json and figures");

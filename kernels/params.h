@@ -1,4 +1,5 @@
-// What the host tells the kernels. Compiles as C++ and as OpenCL C.
+// The structs and constants that the host and the kernels share. This file compiles as C++ and as OpenCL C: members of
+// 8 bytes come first in each struct, so that both lay it out alike.
 #ifndef DERMIS_PARAMS_H
 #define DERMIS_PARAMS_H
 
@@ -18,35 +19,34 @@ typedef long long Bytes;
 // Octaves of r^4 in a table of the separable passes.
 #define OCTAVES 32
 
-// Parts of a level that have weights of their own for flat blocks.
+// A tap level has weights for flat blocks at so many sizes of a pixel between it and the next level.
 #define LEVEL_PARTS 8
 
-// Pixels that a window has to the left and to the right of those that taps may fall on, so that a vector that straddles
-// the edge stays in memory.
+// A window has so many pixels to the left and to the right of those that taps may fall on, so that a vector that
+// straddles the edge stays in memory.
 #define PADDING 16
 
-// A byte of the material plane: 0 = no material, else 1 + the index of the material. A pixel whose kernel is narrower
-// than half a pixel gives light but takes none.
+// A byte of the plane of material ids is 0 where there is no material, else 1 + the index of the material. A pixel
+// whose kernel is narrower than half a pixel has NARROW_BIT set: it gives light but takes none.
 #define MATERIAL_MASK 0x7f
 #define NARROW_BIT 0x80
 #define MAX_MATERIALS 127
 
-// Counters of a run, those from bad on of pixels, or of their channels that are left alone; the height of its tiles,
-// and how far taps of the vertical pass go.
+// Counters of a run.
 #define COUNTER_NEXT_TILE 0
 #define COUNTER_WORKERS 1
-#define COUNTER_BAD 2
+#define COUNTER_BAD 2  // pixels, like those that follow
 #define COUNTER_SCATTERED 3
 #define COUNTER_NARROW 4
 #define COUNTER_FLAT 5
 #define COUNTER_SMOOTH 6
-#define COUNTER_CHANNELS 7
-#define COUNTER_TILE_HEIGHT 8
-#define COUNTER_UNLIT 9
-#define COUNTER_REACH 10
+#define COUNTER_CHANNELS 7     // channels of pixels that no tap is read for
+#define COUNTER_TILE_HEIGHT 8  // px, as the device chose it
+#define COUNTER_UNLIT 9        // pixels
+#define COUNTER_REACH 10       // px that taps of the vertical pass go at most
 #define RUN_COUNTERS 11
 
-// What became of a tile.
+// Kinds of tile, as dermis::TileKind.
 #define TILE_WITHOUT_MATERIAL 0
 #define TILE_NARROW 1
 #define TILE_UNLIT 2
@@ -57,19 +57,19 @@ typedef long long Bytes;
 #define TILE_REUSED 7  // nothing within reach has changed since the frame before
 #define TILE_KINDS 8
 
-// No tap of the vertical pass lies more columns than this from its pixel, unless it is rotated: shear in taps.hpp.
+// No tap of the vertical pass lies more columns than this from its pixel, unless it is rotated: see shear in taps.hpp.
 #define MOST_SIDE 32
 
-// Directions of the rotation of tap axes.
+// Tap axes and discs are turned by multiples of 2 pi over this.
 #define ROTATIONS 256
 
-// Shares of the light from which on the samples of a disc may begin: i / DISC_STARTS.
+// The samples of a disc may leave out the share i / DISC_STARTS of the light that is nearest.
 #define DISC_STARTS 16
 
-// Blocks of 1, 2, 4, ... pixels a side that the samples of a disc may stand for.
+// The samples of a disc may read blocks of 1, 2, 4, ... pixels a side: so many sizes.
 #define MOST_TEXEL_LEVELS 9
 
-// Format of a value, as dermis::Format.
+// Formats of a value, as dermis::Format.
 #define FORMAT_F16 0
 #define FORMAT_F32 1
 #define FORMAT_U8 2
@@ -86,18 +86,30 @@ struct ImageParams {
   int padding;
 };
 
-// One frame. A pixel at view depth z spans mm_per_px + slope * z, in x and in y.
+// Where all images of a frame lie; zeros for one that it does not have.
+struct FrameLayouts {
+  struct ImageParams light, albedo, depth, material, mask, matte, normal, beauty;
+  struct ImageParams scattered, result;
+};
+
+// The choices of a run; each member is 0 or 1.
+struct RunFlags {
+  int writes_scattered;
+  int writes_result;
+  int zeroes_bad;  // outputs of pixels whose light is not finite become 0
+  int copies;      // pixels that do not scatter are written, too
+  int skips;       // a tile under uniform light is not filtered
+  int defers;      // light after scattering is kept until the whole frame has been read
+  int reuses;      // tiles that have not changed since the frame before keep its deferred light
+};
+
+// The size and the camera of a frame. A pixel at view depth z spans mm_per_px + slope * z, in x and in y.
 struct FrameParams {
   int width;
   int height;
-  int stride;  // of the plane of materials, bytes
+  int stride;  // of planes as large as the frame, elements
   int blocks_x;
   int blocks_y;
-  int tile_width;
-  int tile_height;  // the largest one
-  int least_tile_height;
-  int tiles_x;
-  int tiles_y;  // of the largest height
   float mm_per_unit;
   float mm_per_px_x;
   float mm_per_px_y;
@@ -109,27 +121,37 @@ struct FrameParams {
   float widest_turn;  // how far a tap that is turned leaves its axis, px per px of its offset
 };
 
-// What classification learns of a block.
+// The tiles of a frame.
+struct TileParams {
+  int width;
+  int height;        // the largest one, unless the device has chosen
+  int least_height;  // that the device may choose
+  int columns;
+  int rows;  // of that height
+  int workers;
+};
+
+// A block as classification sees it.
 struct BlockParams {
   float depth_low, depth_high;      // mm; of all pixels with a material
-  float along_x_low, along_x_high;  // change of depth to the next pixel of the same material
+  float along_x_low, along_x_high;  // change of depth to the next pixel of the same material, mm
   float along_y_low, along_y_high;
   float finest_x, finest_y;    // largest px_per_mm of a pixel that scatters, px per mm, times its width factor
   unsigned int scattering[4];  // a bit for each material that some pixel scatters by
-  int material;                // byte of all pixels of the plane of materials; 0 if they differ
+  int material;                // byte of all its pixels in the plane of material ids; 0 if they differ
   int scattered;               // pixels
-  int narrow;
+  int narrow;                  // pixels
 };
 
-// What one pass does in a block.
+// One pass in a block.
 struct BlockPass {
-  float px_per_mm;  // that its levels are chosen by, px per mm; 0 if nothing scatters
+  float px_per_mm;  // chooses the tap levels; 0 if nothing scatters
   int block_class;
   int shear;     // of flat and smooth blocks in the vertical pass, px per row times 4096
-  int material;  // 1 + the index of the only one that taps fall on, all in the frame; 0 if there is more than that
+  int material;  // 1 + the index of the material if all taps fall on it, within the frame; else 0
 };
 
-// Shapes of a block in a pass.
+// Classes of a block in a pass.
 #define CLASS_EMPTY -1  // no pixel has a material
 #define CLASS_FLAT 0
 #define CLASS_SMOOTH 1
@@ -139,40 +161,62 @@ struct BlockPasses {
   struct BlockPass x, y;
 };
 
-// How the pixels of a block are scattered in one pass.
+// The choice of a kernel and its weights for a block in one pass.
 struct ChoiceParams {
   int variant;
   int material;    // index
   int level;       // index
   int weight;      // index of the first flat or smooth one
   int shear;       // as in BlockPass
-  int padding[3];  // the memory of the next worker, which follows them, has to be aligned
+  int padding[3];  // what follows in the memory of a tile has to be aligned
 };
 
-// There is nothing, or all taps fall on the material of the block, which has that shape, or they fall on anything.
+// The block is empty, or all taps fall on its material and it is of that class, or taps may fall on anything.
 #define VARIANT_EMPTY CLASS_EMPTY
 #define VARIANT_FLAT CLASS_FLAT
 #define VARIANT_SMOOTH CLASS_SMOOTH
 #define VARIANT_CURVED CLASS_CURVED
 #define VARIANT_GENERAL 3
 
-// Part of a frame in memory: see window.h.
+// Where the planes of a window begin, bytes: see window.h. The light comes first.
+struct WindowLayout {
+  Bytes plane;  // elements of each
+  Bytes segment;
+  Bytes depth;
+  Bytes width;
+  Bytes material;
+  Bytes material_ids;
+};
+
+// A part of a frame in memory: see window.h.
 struct WindowParams {
+  struct WindowLayout planes;
   int x_begin, x_end;
   int y_begin, y_end;
   int row_mask;
   int row_stride;
 };
 
-// Where one LinearTable lies in the buffer of tables.
+// The memory of a worker that filters one tile after the other: two windows, and where the other parts begin, bytes.
+struct TileMemory {
+  struct WindowLayout horizontal;
+  struct WindowLayout vertical;
+  Bytes vertical_window;
+  Bytes strip;
+  Bytes choices;
+  Bytes row_at;
+  Bytes side_at;
+  Bytes bytes;  // of one worker
+};
+
+// Where a LinearTable lies in the buffer of tables.
 struct TableParams {
   int first;       // index of the first node
   int first_bits;  // float bits of r^2 there
   int last_bits;   // bits of the last node less first_bits
 };
 
-// A RadialTable.
-// Padded so that the coefficients of a table lie in cache lines of their own.
+// A RadialTable. The padding puts the coefficients of a table into cache lines of their own.
 struct OctavesParams {
   int first_bits;  // float bits of r^4 where the first octave begins
   int padding[15];
@@ -181,19 +225,32 @@ struct OctavesParams {
 
 // One material.
 struct MaterialParams {
-  float radius_mm;  // of the separable passes
-  float reach_mm;   // of the exact integral
+  float radius_mm;  // of the taps
   float relative_width[3];
   int width_follows_albedo;
   int id;
   int first_level;
   int levels;
   int first_term;
-  struct TableParams radial;     // exact integral: R(r)
-  struct TableParams cumulated;  // exact integral: the light within r
 };
 
-// One term: scale f(x) f(y).
+// The profile of one material, for the methods that sum over the surface.
+struct ProfileParams {
+  float reach_mm;                // no light comes from farther away
+  struct TableParams radial;     // R(r)
+  struct TableParams cumulated;  // the light within r
+};
+
+// Where the tables of taps begin in their buffer, bytes.
+struct TapTables {
+  Bytes terms;
+  Bytes offsets;
+  Bytes weights;
+  Bytes flat_weights;
+  Bytes smooth_weights;
+};
+
+// One term of a kernel: scale f(x) f(y).
 struct TermParams {
   float scale[3];
   float sum[3];
@@ -203,14 +260,14 @@ struct TermParams {
   struct OctavesParams centre;   // integral of f over |x| < r
 };
 
-// One tap set. Its weights are those of the centre, then of each pair; of every term each time.
+// One tap level. Its weights are those of the centre, then of each pair; of every term each time.
 struct TapLevelParams {
   float px_per_mm;
   float centre_half_width_px;
   int first_offset;
   int pairs;
-  int channel_pairs[3];  // those in which a channel has a weight, the first ones; none if its spread is below half a
-                         // pixel
+  int channel_pairs[3];  // a channel has weights in so many pairs, the first ones; in none if its spread is below half
+                         // a pixel
   int rotated_pairs;     // the first ones
   int first_weight;
   int first_flat_weight;  // of the first part
@@ -218,18 +275,19 @@ struct TapLevelParams {
   int last_offset_px;
 };
 
-// What a pair of taps is worth in one term; of a centre, length_mm is the gain of the centre.
+// The weight of a pair of taps in one term, on a curved block. A centre tap has its gain in length_mm.
 struct WeightParams {
   float length_mm[3];
   float share[3];  // of its weight in the first term
 };
 
-// The same on a flat block.
+// The weight of a centre tap or a pair in one term, on a flat block.
 struct FlatWeight {
   float rgb[3];
 };
 
-// The same on a smooth block: q and k of taps.hpp times the last two are added, k with the sign of the offset.
+// The weight of a centre tap or a pair in one term, on a smooth block: q and k of taps.hpp times the last two are added
+// to the first, k with the sign of the offset.
 struct SmoothWeight {
   float rgb[3];
   float stretch[3];
@@ -322,16 +380,16 @@ struct RotationParams {
   int padding;
 };
 
-// A pixel, or a block of pixels, as samples of a disc read it.
+// A pixel, or a square of pixels, as samples of a disc read it.
 struct TexelParams {
   float light[3];
   float area;              // of surface per pixel, mm^2
   float depth;             // in the middle, mm
   float slope_x, slope_y;  // of depth, mm per px
-  int material;            // 1 + its index; 0 where it gives no light, or not all of a block does
+  int material;            // 1 + its index; 0 where it gives no light, or not all of a square does
 };
 
-// Where they lie: a level has width >> level columns, and height >> level rows.
+// Where texels lie: level i has width >> i columns, and height >> i rows.
 struct TexelLevels {
   Bytes first[MOST_TEXEL_LEVELS];  // texels
   Bytes texels;                    // of all levels
@@ -342,21 +400,21 @@ struct TexelLevels {
 // One sample of a disc, in the plane of the disc, for a profile as wide as that of the material.
 struct SampleParams {
   float x_mm, y_mm;
-  float area_mm2;    // that it stands for
-  float spacing_mm;  // the root of that
+  float area_mm2;    // it stands for so much of the disc
+  float spacing_mm;  // the root of the area
 };
 
-// The samples of a material: few of them for narrow kernels, and all; of each DISC_STARTS sets.
+// The samples of a material: few of them for narrow kernels, and all for wide ones; DISC_STARTS sets of each.
 struct DiscParams {
   int first_sample[2];
   float reach_mm;                  // no sample reads farther
   float inner_mm[2][DISC_STARTS];  // no sample of the set lies nearer, nor does what it stands for
 };
 
-// How many samples, and of what.
+// The number of samples that a pixel reads.
 struct DiscCounts {
-  int samples[2];  // as in DiscParams; of the first none if all pixels have as many
-  int seeds;
+  int samples[2];  // as in DiscParams; the first is 0 if all pixels have as many
+  int seeds;       // the result is the mean over so many
   unsigned int seed;
 };
 
@@ -367,7 +425,7 @@ struct DiscCounts {
 // Lanes of the states of a recursion: 8 times the pole pair, plus 4 times the function, plus the channel.
 #define STATES 16
 
-// What becomes of the light in a block of texels, by channel.
+// The fate of the light in a block of texels, by channel.
 #define LIT_EMPTY 0  // no texel of an object
 #define LIT_DARK 1   // no light
 #define LIT_BRIGHT 2

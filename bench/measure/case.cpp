@@ -6,84 +6,37 @@ namespace dermis::bench {
 
 namespace {
 
-std::string_view name_of(Model model) {
-  switch (model) {
-    case Model::pre_integrated:
-      return "pre-integrated";
-    case Model::artist:
-      return "artist";
-    case Model::guided:
-      return "guided";
-    case Model::svd:
-      return "svd";
-    case Model::gaussians:
-      return "gaussians";
-    case Model::optimised:
-      return "optimised";
-  }
-  return "";
-}
-
 bool has_taps(Family family) {
   return family == Family::dermis || family == Family::naive || family == Family::rule_2012 || family == Family::simd ||
          family == Family::simd_depth;
 }
 
-}  // namespace
-
-std::string_view name_of(Family family) {
-  switch (family) {
+/// The name on a picture, without the number of taps or samples and what is unusual.
+std::string method_on_picture(const Case& what) {
+  switch (what.family) {
     case Family::dermis:
-      return "dermis";
-    case Family::dermis_exact:
-      return "dermis-exact";
+      if (what.design.model == Model::pre_integrated) return "importance-sampled";
+      if (what.design.model == Model::gaussians) return fmt::format("{} Gaussians", what.design.rank);
+      return fmt::format("{}, rank {}", what.model(), what.design.rank);
     case Family::dermis_disc:
-      return "dermis-disc";
-    case Family::texture_gaussians:
-      return "texture-gaussians";
-    case Family::texture_recursive:
-      return "texture-recursive";
-    case Family::naive:
-      return "naive";
+      return what.disc.prefiltered ? "discs, prefiltered" : "discs";
     case Family::rule_2012:
-      return "rule-2012";
-    case Family::simd:
-      return "simd";
-    case Family::simd_depth:
-      return "simd-depth";
-    case Family::opencv_separable:
-      return "opencv-separable";
-    case Family::opencv_bilateral:
-      return "opencv-bilateral";
-    case Family::fft:
-      return "fft";
-    case Family::start_up:
-      return "start-up";
+      return "rule of 2012";
+    default:
+      return "exact";
   }
-  return "";
 }
 
-std::string_view title_of(Group group) {
-  switch (group) {
-    case Group::methods:
-      return "methods";
-    case Group::coverage:
-      return "coverage";
-    case Group::width:
-      return "kernel width";
-    case Group::pixels:
-      return "pixels";
-    case Group::threads:
-      return "threads and memory";
-    case Group::flat:
-      return "flat, against exact convolution";
-    case Group::texture:
-      return "texture space, against exact convolution";
-    case Group::start_up:
-      return "start-up";
-  }
-  return "";
+std::string name_on_picture(const Case& what) {
+  std::string text = method_on_picture(what);
+  if (what.family == Family::dermis_disc) text += fmt::format(", {} samples", what.disc.samples);
+  if (has_taps(what.family)) text += fmt::format(", {} taps", what.design.count);
+  if (!what.sheared) text += ", plain passes";
+  if (what.jitter > 0) text += fmt::format(", jitter {}", what.jitter);
+  return text;
 }
+
+}  // namespace
 
 std::string Case::model() const {
   switch (family) {
@@ -112,11 +65,18 @@ std::string Case::method() const {
 }
 
 std::string Case::name() const {
+  if (is_on_picture()) return name_on_picture(*this);
   std::string text = method() + "/" + scene.name();
   if (!sheared) text += "/plain";
   if (threads > 0) text += fmt::format("/threads{}", threads);
   if (memory == Memory::interleaved_f16) text += "/rgba-half";
   return text;
+}
+
+std::string Case::series() const {
+  const bool is_usual = sheared && jitter == 0 && design.model != Model::gaussians;
+  const bool is_dermis = family == Family::dermis || family == Family::dermis_disc;
+  return is_on_picture() && is_dermis && is_usual ? method_on_picture(*this) : "";
 }
 
 }  // namespace dermis::bench

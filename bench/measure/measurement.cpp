@@ -1,31 +1,42 @@
 #include "measure/measurement.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <numeric>
 #include <random>
 
 #include "dermis/error.hpp"
-#include "measure/copy.hpp"
+#include "measure/frame_copy.hpp"
 #include "measure/peak_memory.hpp"
-#include "measure/percentile.hpp"
 #include "measure/start_up.hpp"
 #include "measure/truth.hpp"
 #include "opponents/opponents.hpp"
+#include "report/stopwatch.hpp"
 #include "support/machine.hpp"
-#include "support/stopwatch.hpp"
 
 namespace dermis::bench {
 
 namespace {
 
-/// What share of the progress is preparation.
+using program::time_ms;
+
+/// The share of the progress that is preparation.
 constexpr double preparation = 0.6;
+
+/// The value with `share` of the others below it; 0 if there are no values.
+double percentile(std::vector<double> values, double share) {
+  if (values.empty()) return 0;
+  std::sort(values.begin(), values.end());
+  return values[static_cast<std::size_t>(std::lround(share * static_cast<double>(values.size() - 1)))];
+}
 
 /// Scenes, their truths and devices, each made once.
 class Stage {
  public:
-  explicit Stage(std::string device_name) : device_name_(std::move(device_name)) {}
+  explicit Stage(const Setup& setup) : device_name_(setup.device), threads_(setup.threads) {
+    if (setup.picture) scenes_[setup.picture->spec] = std::make_unique<Scene>(*setup.picture);
+  }
 
   const Scene& scene(const SceneSpec& spec) {
     std::unique_ptr<Scene>& its = scenes_[spec];
@@ -40,7 +51,14 @@ class Stage {
     return *its;
   }
 
+  /// `exact` is the result of the exact method on a picture: three planes.
+  void keep_truth(const SceneSpec& spec, const std::vector<float>& exact) {
+    truths_[spec] = std::make_unique<Truth>(truth_of_picture(scene(spec), exact));
+  }
+
+  /// 0: as many threads as the setup says.
   const Device& device(int threads) {
+    if (threads == 0) threads = threads_;
     std::unique_ptr<Device>& its = devices_[threads];
     if (!its) its = std::make_unique<Device>(Device::open(device_name_, threads));
     return *its;
@@ -48,6 +66,7 @@ class Stage {
 
  private:
   std::string device_name_;
+  int threads_;
   std::map<SceneSpec, std::unique_ptr<Scene>> scenes_;
   std::map<SceneSpec, std::unique_ptr<Truth>> truths_;
   std::map<int, std::unique_ptr<Device>> devices_;
@@ -58,8 +77,8 @@ class Stage {
 struct Runner {
   Row row;
   std::unique_ptr<Opponent> opponent;
-  std::vector<double> ms;
-  std::map<std::string, std::vector<double>> stages_ms;
+  std::vector<double> ms = {};
+  std::map<std::string, std::vector<double>> stages_ms = {};
 
   void run() {
     opponent->reset();
@@ -72,13 +91,16 @@ struct Runner {
     }
   }
 
-  bool is_done(const Effort& effort) const {
-    // What takes seconds is not run often.
-    constexpr double enough_ms = 1500;
+  void warm_up() {
+    run();
+    ms.clear();
+    stages_ms.clear();
+  }
+
+  bool is_done(const Setup& setup) const {
     const double total_ms = std::accumulate(ms.begin(), ms.end(), 0.0);
-    const auto runs = static_cast<int>(ms.size());
-    if (total_ms >= enough_ms) return true;
-    return runs >= effort.rounds && total_ms >= effort.min_ms;
+    if (total_ms >= setup.enough_ms) return true;
+    return static_cast<int>(ms.size()) >= setup.rounds && total_ms >= setup.min_ms;
   }
 };
 
@@ -93,9 +115,10 @@ void measure_error(Row& row, const std::vector<float>& result, Stage& stage) {
   const SceneSpec& spec = row.what.scene;
   if (stage.scene(spec).covered == 0) return;
   const Truth& truth = stage.truth(spec);
-  const Distance off = distance(result, truth);
+  Distance off = distance(result, truth);
   row.rel_l2 = off.rel_l2;
   row.max_err = off.max_err;
+  row.rel_l2_of_parts = std::move(off.rel_l2_of_parts);
   row.truth = truth.source;
 }
 
@@ -111,52 +134,74 @@ Runner prepare(Case what, Stage& stage) {
   row.plan_ms = time_ms([&] { runner.opponent = make_opponent(what, scene, device); });
   row.first_run_ms = time_ms([&] { runner.opponent->run(); });
   row.peak_mb = peak.mb();
-  measure_error(row, runner.opponent->result(), stage);
+  row.scratch_mib = static_cast<double>(runner.opponent->scratch_bytes()) / (1024 * 1024);
+  const std::vector<float> result = runner.opponent->result();
+  const bool is_truth = what.is_on_picture() && what.family == Family::dermis_exact;
+  if (is_truth) {
+    stage.keep_truth(what.scene, result);
+    runner.ms = {row.first_run_ms};  // it takes minutes
+  }
+  measure_error(row, result, stage);
   return runner;
 }
 
-Row start_up_row(const Case& what, const std::string& device_name) {
+Runner start_up(const Case& what, const std::string& device_name) {
   const StartUp found = measure_start_up(what.cache_is_filled, device_name);
-  Row row;
+  Runner runner;
+  Row& row = runner.row;
   row.what = what;
   row.loads = loads_of(what);
-  row.ms = row.ms_p10 = row.ms_p90 = found.plan_ms + found.first_run_ms;
-  row.runs = 1;
   row.plan_ms = found.plan_ms;
   row.first_run_ms = found.first_run_ms;
   row.second_plan_ms = found.second_plan_ms;
   row.peak_mb = found.peak_mb;
-  return row;
+  runner.ms = {found.plan_ms + found.first_run_ms};
+  return runner;
 }
 
-void go_round(std::vector<Runner*> runners, std::map<std::pair<int, int>, FrameCopy>& copies,
-              std::map<std::pair<int, int>, std::vector<double>>& copy_ms, const Effort& effort, const Report& report) {
-  std::mt19937 random(effort.seed);
+/// Copies of frames of all sizes, and their times.
+struct Copies {
+  std::map<std::pair<int, int>, FrameCopy> by_size = {};
+  std::map<std::pair<int, int>, std::vector<double>> ms = {};
+
+  void run() {
+    for (auto& [size, copy] : by_size) ms[size].push_back(time_ms([&copy = copy] { copy.run(); }));
+  }
+};
+
+/// Runs the cases round by round, each round in another order, until all are done.
+void go_round(std::vector<Runner*> runners, Copies& copies, const Setup& setup, const Report& report) {
+  std::mt19937 random(setup.seed);
   const std::size_t all = runners.size();
-  for (auto& [size, copy] : copies) copy.run();
+  copies.run();
+  for (Runner* runner : runners) {
+    if (runner->row.first_run_ms < setup.enough_ms) runner->warm_up();
+  }
+  copies.ms.clear();
   while (!runners.empty()) {
     report(preparation + (1 - preparation) * static_cast<double>(all - runners.size()) / static_cast<double>(all),
            std::to_string(runners.size()) + " cases going round");
     std::shuffle(runners.begin(), runners.end(), random);
     for (std::size_t i = 0; i < runners.size(); ++i) {
-      // The copy as often as needed to see the machine's mood all through the round.
-      if (i % 8 == 0) {
-        for (auto& [size, copy] : copies) copy_ms[size].push_back(time_ms([&copy = copy] { copy.run(); }));
-      }
+      // A machine's speed changes within a round, so the copy runs several times in each.
+      if (i % 8 == 0) copies.run();
       runners[i]->run();
     }
-    std::erase_if(runners, [&](const Runner* runner) { return runner->is_done(effort); });
+    std::erase_if(runners, [&](const Runner* runner) { return runner->is_done(setup); });
   }
+  if (copies.ms.empty()) copies.run();
 }
 
-void finish(Runner& runner, double copy_ms, const Scene& scene) {
+void finish(Runner& runner, double copy_ms, std::size_t covered) {
   Row& row = runner.row;
   row.ms = percentile(runner.ms, 0.5);
   row.ms_p10 = percentile(runner.ms, 0.1);
   row.ms_p90 = percentile(runner.ms, 0.9);
   row.runs = static_cast<int>(runner.ms.size());
+  if (row.runs == 0) row.plan_ms = row.first_run_ms = row.peak_mb = 0;  // the oracle's times are of no interest
+  if (!runner.opponent || row.runs == 0) return;
   row.copy_ratio = row.ms / copy_ms;
-  const double loads_per_ns = row.loads * static_cast<double>(scene.covered) / (row.ms * 1e6);
+  const double loads_per_ns = row.loads * static_cast<double>(covered) / (row.ms * 1e6);
   row.gb_s = 16 * loads_per_ns;
   row.gflop_s = 12 * loads_per_ns;
   if (runner.stages_ms.empty()) return;
@@ -164,32 +209,41 @@ void finish(Runner& runner, double copy_ms, const Scene& scene) {
   for (const auto& [name, values] : runner.stages_ms) (*row.stages_ms)[name] = percentile(values, 0.5);
 }
 
+/// Whether the case has one run or, by the oracle, none that is worth a time.
+bool runs_once(const Case& what) {
+  return what.family == Family::start_up ||
+         (what.is_on_picture() && (what.family == Family::dermis_exact || what.family == Family::rule_2012));
+}
+
 }  // namespace
 
-Measurement measure_cases(const std::vector<Case>& cases, const std::string& device_name, const Effort& effort,
-                          const Report& report) {
-  Stage stage(device_name);
+Measurement measure_cases(const std::vector<Case>& cases, const Setup& setup, const Report& report) {
+  Stage stage(setup);
   Measurement found{.device = stage.device(0).info(), .load_before = load_average()};
-  std::vector<Runner> runners(cases.size());
+  std::vector<Runner> runners;
   std::vector<Runner*> going;
-  std::map<std::pair<int, int>, FrameCopy> copies;
-  std::map<std::pair<int, int>, std::vector<double>> copy_ms;
-  for (std::size_t i = 0; i < cases.size(); ++i) {
-    report(preparation * static_cast<double>(i) / static_cast<double>(cases.size()), cases[i].name());
-    if (cases[i].family == Family::start_up) {
-      runners[i].row = start_up_row(cases[i], device_name);
-      continue;
-    }
-    runners[i] = prepare(cases[i], stage);
-    going.push_back(&runners[i]);
-    copies.try_emplace({cases[i].scene.width, cases[i].scene.height}, stage.scene(cases[i].scene).pixels());
+  Copies copies;
+  runners.reserve(cases.size());
+  for (const Case& what : cases) {
+    report(preparation * static_cast<double>(runners.size()) / static_cast<double>(cases.size()), what.name());
+    runners.push_back(what.family == Family::start_up ? start_up(what, setup.device) : prepare(what, stage));
+    if (!runs_once(what)) going.push_back(&runners.back());
+    if (what.family == Family::start_up) continue;
+    copies.by_size.try_emplace({what.scene.width, what.scene.height}, stage.scene(what.scene).pixels());
   }
-  go_round(going, copies, copy_ms, effort, report);
-  for (const auto& [size, values] : copy_ms) found.copy_ms[size] = percentile(values, 0.5);
+  go_round(going, copies, setup, report);
+  for (const auto& [size, values] : copies.ms) found.copy_ms[size] = percentile(values, 0.5);
   for (Runner& runner : runners) {
     const SceneSpec& spec = runner.row.what.scene;
-    if (runner.opponent) finish(runner, found.copy_ms.at({spec.width, spec.height}), stage.scene(spec));
+    const bool is_start_up = !runner.opponent;
+    finish(runner, is_start_up ? 1 : found.copy_ms.at({spec.width, spec.height}),
+           is_start_up ? 0 : stage.scene(spec).covered);
     found.rows.push_back(std::move(runner.row));
+  }
+  if (setup.picture) {
+    found.picture = setup.picture->name;
+    for (const Part& part : stage.truth(setup.picture->spec).parts)
+      found.parts.push_back({part.name, part.places.size()});
   }
   report(1, "");
   return found;

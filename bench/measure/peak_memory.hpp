@@ -1,4 +1,4 @@
-// How much memory something takes at its worst moment.
+// The memory that something takes at its worst moment.
 #pragma once
 
 namespace dermis::bench {

@@ -2,8 +2,6 @@
 
 #include <cstdlib>
 
-#include "opponents/opponents.hpp"
-
 namespace dermis::bench {
 
 PixelKernel::PixelKernel(const Scene& scene, int reach_px) : reach_px_(reach_px) {

@@ -1,4 +1,4 @@
-// The profile on the pixels of a flat scene: what an exact convolution weighs them with.
+// The profile on the pixels of a flat scene: the weights of an exact convolution.
 #pragma once
 
 #include <array>
@@ -16,7 +16,7 @@ class PixelKernel {
   int reach_px() const { return reach_px_; }
   double at(int channel, int dx, int dy) const;
 
-  /// Adds the kernel to a periodic picture, about pixel (0, 0).
+  /// Adds the kernel about pixel (0, 0) to a picture that repeats.
   template <class Float>
   void wrap_into(int channel, Float* picture, int width, int height, int pitch) const {
     for (int dy = -reach_px_; dy <= reach_px_; ++dy) {

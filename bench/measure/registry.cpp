@@ -1,7 +1,9 @@
 #include "measure/registry.hpp"
 
+#include <regex>
 #include <utility>
 
+#include "dermis/error.hpp"
 #include "opponents/opponents.hpp"
 
 namespace dermis::bench {
@@ -40,6 +42,14 @@ SceneSpec wide(SceneSpec scene, int kernel_px) {
 SceneSpec covered(SceneSpec scene, int percent) {
   scene.coverage_percent = percent;
   return scene;
+}
+
+std::vector<Case> on_picture(std::vector<Case> cases) {
+  for (Case& what : cases) {
+    what.group = Group::picture;
+    what.scene = {.geometry = Geometry::picture};
+  }
+  return cases;
 }
 
 void add_methods(std::vector<Case>& cases) {
@@ -119,7 +129,7 @@ void add_start_up(std::vector<Case>& cases) {
   }
 }
 
-/// Every way to filter one scene.
+/// Adds every way to filter one scene.
 void add_all_methods(std::vector<Case>& cases, const SceneSpec& scene) {
   for (const int threads : {0, 1}) {
     for (const int count : {7, 17, 25, 33}) {
@@ -160,6 +170,25 @@ std::vector<Case> default_cases() {
   return cases;
 }
 
+std::vector<Case> picture_cases() {
+  std::vector<Case> cases;
+  for (const int count : {7, 17, 25}) cases.push_back({.design = by_importance(count)});
+  for (const int count : {7, 11, 17, 25, 33}) cases.push_back({.design = optimised(1, count)});
+  for (const int count : {11, 17, 25, 33}) cases.push_back({.design = optimised(2, count)});
+  cases.push_back({.design = optimised(3, 25)});
+  cases.push_back({.design = {.model = Model::gaussians, .rank = 4, .count = 17}});
+  cases.push_back({.design = optimised(2, 17), .sheared = false});
+  for (const double jitter : {0.1, 0.3}) cases.push_back({.design = optimised(2, 17), .jitter = jitter});
+  for (const bool prefiltered : {false, true}) {
+    for (const int samples : {21, 55}) cases.push_back(disc({}, samples, prefiltered));
+  }
+  return on_picture(cases);
+}
+
+std::vector<Case> picture_references() {
+  return on_picture({{.family = Family::dermis_exact}, opponent(Family::rule_2012, Group::picture, {}, 25)});
+}
+
 std::vector<Case> all_cases() {
   std::vector<Case> cases;
   for (const std::pair<int, int>& size : {std::pair{320, 180}, sizes[0], sizes[1], sizes[2]}) {
@@ -170,6 +199,17 @@ std::vector<Case> all_cases() {
     }
   }
   add_start_up(cases);
+  return cases;
+}
+
+std::vector<Case> matching(std::vector<Case> cases, const std::string& expression) {
+  try {
+    const std::regex wanted(expression);
+    std::erase_if(cases, [&](const Case& what) { return !std::regex_search(what.name(), wanted); });
+  } catch (const std::regex_error&) {
+    throw Error(ErrorCode::usage, "--filter", expression, "a regular expression");
+  }
+  if (cases.empty()) throw Error(ErrorCode::usage, "--filter", expression, "a match of a name that --list prints");
   return cases;
 }
 

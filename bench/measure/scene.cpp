@@ -35,7 +35,7 @@ double facing_light(double nx, double ny, double nz) {
   return std::max(0.0, nx * towards_light[0] + ny * towards_light[1] + nz * towards_light[2]);
 }
 
-/// What the ray (u, v, 1) hits first.
+/// The first point that the ray (u, v, 1) hits.
 Point first_hit(double u, double v) {
   Point hit{u * wall_z, v * wall_z, wall_z, facing_light(0, 0, -1)};
   if (v * wall_z > floor_y) {
@@ -72,8 +72,21 @@ double slats(double s, double t) {
 }  // namespace
 
 std::string SceneSpec::name() const {
-  return fmt::format("{}/{}x{}/w{}/c{}", geometry == Geometry::flat ? "flat" : "spheres", width, height, kernel_px,
-                     coverage_percent);
+  if (geometry == Geometry::picture) return "picture";
+  return fmt::format("{}/{}x{}/w{}/c{}", name_of(geometry), width, height, kernel_px, coverage_percent);
+}
+
+const Profile& skin() { return preset("skin").profile; }
+
+Frame Scene::frame(float* scattered) const {
+  return {.width = spec.width,
+          .height = spec.height,
+          .light = {.host = light.data(), .layout = layout},
+          .depth = {.host = depth.data()},
+          .material = {.host = ids.empty() ? nullptr : ids.data()},
+          .camera = camera,
+          .mm_per_unit = mm_per_unit,
+          .scattered = {.host = scattered, .layout = layout}};
 }
 
 Scene make_scene(const SceneSpec& spec) {
@@ -85,8 +98,12 @@ Scene make_scene(const SceneSpec& spec) {
   Scene scene{.spec = spec,
               .camera = is_flat ? Camera::orthographic(1, 1)
                                 : Camera::perspective(focal_px, focal_px, width / 2.0, height / 2.0),
+              .layout = {.channel_stride = static_cast<std::ptrdiff_t>(plane * sizeof(float)),
+                         .pixel_stride = 4,
+                         .row_stride = 4L * width},
               .light = std::vector<float>(3 * plane),
-              .depth = std::vector<float>(plane, unseen_depth)};
+              .depth = std::vector<float>(plane, unseen_depth),
+              .materials = {{.profile = skin()}}};
   scene.mm_per_unit = (is_flat ? 1 : focal_px) / scene.px_per_mm();
   constexpr std::array<double, 3> tint = {0.9, 0.7, 0.55};
   for (int y = 0; y < height; ++y) {
@@ -107,7 +124,7 @@ Scene make_scene(const SceneSpec& spec) {
       const double shade = slats(hit.x, hit.y + 0.3 * hit.z) * (0.15 + hit.facing);
       for (std::size_t c = 0; c < 3; ++c) {
         const double wave = 1 + 0.4 * std::sin(23 * u + 2 * static_cast<double>(c)) * std::cos(17 * v);
-        scene.light[c * plane + pixel] =
+        scene.light[scene.at(pixel, c)] =
             static_cast<float>(0.1 + tint[c] * shade * wave + noise_height * noise(x, y, c));
       }
     }

@@ -1,20 +1,36 @@
-// Made scenes of any size, kernel width and coverage, in host memory.
+// Frames to filter, in host memory: made scenes of any size, kernel width and coverage, or a picture.
 #pragma once
 
+#include <array>
 #include <compare>
+#include <filesystem>
 #include <string>
 #include <vector>
 
-#include "dermis/frame.hpp"
+#include "dermis/plan.hpp"
+#include "dermis/words.hpp"
 
 namespace dermis::bench {
 
 enum class Geometry {
   spheres,  ///< three spheres on a floor before a wall, view depth 1..3 scene units, perspective
   flat,     ///< a plane parallel to the screen, orthographic
+  picture,  ///< read from a file
 };
 
-/// What scene to make.
+}  // namespace dermis::bench
+
+namespace dermis {
+
+template <>
+inline constexpr std::array<Named<bench::Geometry>, 3> word_table<bench::Geometry> = {
+    {{bench::Geometry::spheres, "spheres"}, {bench::Geometry::flat, "flat"}, {bench::Geometry::picture, "picture"}}};
+
+}  // namespace dermis
+
+namespace dermis::bench {
+
+/// Names a scene.
 struct SceneSpec {
   Geometry geometry = Geometry::spheres;
   int width = 1920;
@@ -27,25 +43,50 @@ struct SceneSpec {
   std::string name() const;  ///< "spheres/1920x1080/w16/c100"
 };
 
-/// A standard deviation of the preset "skin", mm: the root of 7.41 mm^2 (GPU Gems 3, ch. 14).
+/// The preset that made scenes have.
+const Profile& skin();
+
+/// The largest standard deviation of "skin", mm: the root of 7.41 mm^2 (GPU Gems 3, ch. 14).
 inline constexpr double skin_width_mm = 2.7221315177632398;
 
-/// A scene. Light is a smooth pattern in the shade of slats plus uniform noise of 0..0.15, the same on every run and on
-/// every crop. What is not covered is depth 1e10 outside an ellipse about the centre of the frame.
 struct Scene {
-  SceneSpec spec;
+  SceneSpec spec;  ///< of a picture, geometry and size alone count
   Camera camera;
   double mm_per_unit = 1;
-  std::vector<float> light;  ///< three planes
-  std::vector<float> depth;  ///< one plane
-  std::size_t covered = 0;   ///< pixels that are not background
+  Layout layout;  ///< of the light and of results like it: f32, all strides given
+  std::vector<float> light;
+  std::vector<float> depth;
+  std::vector<float> ids = {};  ///< material ids; none if there is but one material
+  std::vector<Material> materials;
+  std::string name = {};                         ///< of the picture
+  std::vector<std::string> material_names = {};  ///< of the picture
+  std::size_t covered = 0;                       ///< pixels that scatter
 
   std::size_t pixels() const { return depth.size(); }
   bool is_background(std::size_t pixel) const { return depth[pixel] >= 1e9F; }
-  /// Pixels per mm of a surface at view depth 1 that faces the camera.
+  /// The index of a value among the floats of the light.
+  std::size_t at(std::size_t pixel, std::size_t channel) const {
+    return (pixel * layout.pixel_stride + channel * layout.channel_stride) / sizeof(float);
+  }
+  /// Pixels per mm of a surface at view depth 1 that faces the camera, in a made scene.
   double px_per_mm() const { return spec.kernel_px / skin_width_mm; }
+  /// Views of the images and of an output of the same layout.
+  Frame frame(float* scattered) const;
 };
 
+/// Makes a scene of one material, "skin". Its light, in three planes, is a smooth pattern in the shade of slats plus
+/// uniform noise of 0..0.15, equal on every run and on every crop. Outside an ellipse about the centre of the frame lie
+/// the pixels that are not covered, at depth 1e10.
 Scene make_scene(const SceneSpec& spec);
+
+/// An id and the name of its preset.
+struct NamedMaterial {
+  int id;
+  std::string preset;
+};
+
+/// Reads a picture of Cycles that has light, material ids, and position and depth or one of them. The light lies pixel
+/// by pixel.
+Scene read_picture(const std::filesystem::path& path, double mm_per_unit, const std::vector<NamedMaterial>& materials);
 
 }  // namespace dermis::bench

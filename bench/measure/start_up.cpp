@@ -15,13 +15,15 @@
 #include "dermis/plan.hpp"
 #include "measure/peak_memory.hpp"
 #include "opponents/opponents.hpp"
-#include "support/stopwatch.hpp"
+#include "report/stopwatch.hpp"
 
 namespace dermis::bench {
 
 namespace {
 
-/// A folder of its own under that for temporary files.
+using program::time_ms;
+
+/// A new folder for a cache, below the folder for temporary files.
 class CacheFolder {
  public:
   CacheFolder() : path_((std::filesystem::temp_directory_path() / "dermis-bench-XXXXXX").string()) {
@@ -84,10 +86,10 @@ void run_start_up_child(const std::string& device_name) {
   const Case what;
   const Scene scene = make_scene(what.scene);
   const Device device = Device::open(device_name);
-  const auto make_plan = [&] { return Plan(device, {{.profile = skin()}}, {.depth = true}, {.taps = what.design}); };
+  const auto make_plan = [&] { return Plan(device, scene.materials, {.depth = true}, {.taps = what.design}); };
   std::optional<Plan> first, second;
   const double plan_ms = time_ms([&] { first.emplace(make_plan()); });
-  // It has a plan of its own, equal to the first: images are not to be made while the clock runs.
+  // The filter has its own plan, equal to the first, as its images must not be made while the clock runs.
   const std::unique_ptr<Opponent> filter = make_dermis(what, scene, device);
   const double first_run_ms = time_ms([&] { filter->run(); });
   const double second_plan_ms = time_ms([&] { second.emplace(make_plan()); });

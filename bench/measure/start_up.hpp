@@ -1,4 +1,4 @@
-// What the first frame of a process costs.
+// The cost of the first frame of a process.
 #pragma once
 
 #include <string>
@@ -13,12 +13,12 @@ struct StartUp {
   double peak_mb = 0;
 };
 
-/// Measures one frame of the default scene in a process of its own: this program once more, with --start-up-child. The
-/// caches of compiled kernels (of PoCL and of CUDA) are in a fresh folder; `cache_is_filled` lets a process before fill
-/// them. Throws Error(device) if the process fails.
+/// Measures one frame of the default scene in another process: this program, run with --start-up-child. The caches of
+/// compiled kernels (of PoCL and of CUDA) are in a new folder; with `cache_is_filled` an earlier process fills them.
+/// Throws Error(device) if the process fails.
 StartUp measure_start_up(bool cache_is_filled, const std::string& device_name);
 
-/// The process itself: prints a StartUp as JSON on stdout.
+/// Is that process: prints a StartUp as JSON on stdout.
 void run_start_up_child(const std::string& device_name);
 
 }  // namespace dermis::bench

@@ -2,9 +2,9 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "measure/aligned.hpp"
+#include "inputs/half.hpp"
+#include "measure/aligned_floats.hpp"
 #include "opponents/opponents.hpp"
-#include "support/half.hpp"
 
 namespace dermis::bench {
 
@@ -16,20 +16,16 @@ class Filter final : public Opponent {
       : scene_(scene),
         half_(what.memory == Memory::interleaved_f16),
         in_place_(what.scene.coverage_percent < 100),
-        plan_(device, {{.profile = skin()}}, {.depth = true}, options_of(what)) {
-    const std::size_t plane = scene.pixels();
-    if (half_) {
-      // Red, green, blue and an alpha that nobody reads.
-      half_light_.resize(4 * plane);
-      half_scattered_.resize(4 * plane);
-      for (std::size_t i = 0; i < plane; ++i) {
-        for (std::size_t c = 0; c < 3; ++c) half_light_[4 * i + c] = half_of(scene.light[c * plane + i]);
-      }
-    } else if (in_place_) {
-      scattered_.assign(scene.light.begin(), scene.light.end());
-    } else {
-      scattered_.resize(3 * plane);
-    }
+        plan_(device, scene.materials, FrameDescription::of(scene.frame(nullptr)), options_of(what)) {
+    scattered_.resize(half_ ? 0 : scene.light.size());
+    if (in_place_) std::copy(scene.light.begin(), scene.light.end(), scattered_.begin());
+    if (!half_) return;
+    // A pixel is red, green, blue and an alpha that nobody reads.
+    half_light_.resize(4 * scene.pixels());
+    half_scattered_.resize(half_light_.size());
+    each_value([&](std::size_t pixel, std::size_t c) {
+      half_light_[4 * pixel + c] = half_of(static_cast<double>(scene.light[scene.at(pixel, c)]));
+    });
   }
 
   void reset() override {
@@ -39,16 +35,17 @@ class Filter final : public Opponent {
   void run() override { stats_ = plan_.run(frame()); }
 
   std::vector<float> result() override {
-    if (!half_) return {scattered_.begin(), scattered_.end()};
-    const std::size_t plane = scene_.pixels();
-    std::vector<float> planes(3 * plane);
-    for (std::size_t i = 0; i < plane; ++i) {
-      for (std::size_t c = 0; c < 3; ++c) planes[c * plane + i] = float_of(half_scattered_[4 * i + c]);
-    }
+    std::vector<float> planes(3 * scene_.pixels());
+    each_value([&](std::size_t pixel, std::size_t c) {
+      planes[c * scene_.pixels() + pixel] =
+          half_ ? static_cast<float>(value_of_half(half_scattered_[4 * pixel + c])) : scattered_[scene_.at(pixel, c)];
+    });
     return planes;
   }
 
   std::optional<Stats> stats() override { return stats_; }
+
+  std::size_t scratch_bytes() override { return plan_.scratch_bytes(scene_.spec.width, scene_.spec.height); }
 
  private:
   static Options options_of(const Case& what) {
@@ -57,26 +54,25 @@ class Filter final : public Opponent {
                                                            : Method::separable,
             .taps = what.design,
             .disc = what.disc,
-            .sheared = what.sheared};
+            .sheared = what.sheared,
+            .jitter = what.jitter};
+  }
+
+  template <class Work>
+  void each_value(const Work& work) const {
+    for (std::size_t pixel = 0; pixel < scene_.pixels(); ++pixel) {
+      for (std::size_t c = 0; c < 3; ++c) work(pixel, c);
+    }
   }
 
   Frame frame() {
-    const auto plane_bytes = static_cast<std::ptrdiff_t>(scene_.pixels() * sizeof(float));
-    const Layout planar = {
-        .format = Format::f32, .channel_stride = plane_bytes, .pixel_stride = 4, .row_stride = 4L * scene_.spec.width};
-    const Layout interleaved = {
-        .format = Format::f16, .channel_stride = 2, .pixel_stride = 8, .row_stride = 8L * scene_.spec.width};
-    Frame frame = {.width = scene_.spec.width,
-                   .height = scene_.spec.height,
-                   .depth = {.host = scene_.depth.data()},
-                   .camera = scene_.camera,
-                   .mm_per_unit = scene_.mm_per_unit};
+    Frame frame = scene_.frame(scattered_.data());
+    if (in_place_) frame.light.host = scattered_.data();
     if (half_) {
+      const Layout interleaved = {
+          .format = Format::f16, .channel_stride = 2, .pixel_stride = 8, .row_stride = 8L * scene_.spec.width};
       frame.light = {.host = half_light_.data(), .layout = interleaved};
       frame.scattered = {.host = half_scattered_.data(), .layout = interleaved};
-    } else {
-      frame.light = {.host = in_place_ ? scattered_.data() : scene_.light.data(), .layout = planar};
-      frame.scattered = {.host = scattered_.data(), .layout = planar};
     }
     return frame;
   }

@@ -1,6 +1,7 @@
-// Whatever filters a scene, ready to run.
+// Something that filters a scene, ready to run.
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <vector>
 
@@ -21,6 +22,7 @@ class Opponent {
   virtual void run() = 0;                              ///< returns when all is done
   virtual std::vector<float> result() = 0;             ///< of the last run: three planes
   virtual std::optional<Stats> stats() { return {}; }  ///< of the last run, if it is dermis
+  virtual std::size_t scratch_bytes() { return 0; }    ///< device memory beyond the images, if it is dermis
 };
 
 }  // namespace dermis::bench

@@ -6,8 +6,6 @@
 
 namespace dermis::bench {
 
-const Profile& skin() { return preset("skin").profile; }
-
 int dense_reach_px(const SceneSpec& scene) {
   constexpr double reach = 3.3;  // standard deviations: 99.9 % of a Gaussian, as far as dermis looks in rank 1
   return static_cast<int>(std::lround(reach * scene.kernel_px));

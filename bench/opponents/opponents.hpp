@@ -1,11 +1,10 @@
-// Makes what a case names.
+// Makes the opponent that a case names.
 #pragma once
 
 #include <memory>
 #include <vector>
 
 #include "dermis/device.hpp"
-#include "dermis/profile.hpp"
 #include "measure/case.hpp"
 #include "measure/scene.hpp"
 #include "opponents/opponent.hpp"
@@ -32,9 +31,6 @@ bool has_opencv();
 
 /// Any of them. `device` has as many threads as the case asks for.
 std::unique_ptr<Opponent> make_opponent(const Case& what, const Scene& scene, const Device& device);
-
-/// The profile that everything is measured with.
-const Profile& skin();
 
 /// Image reads per pixel of a run; 0 where that is not the measure.
 double loads_of(const Case& what);

@@ -1,9 +1,11 @@
 // The rules that real-time shaders of 2012 follow (Jimenez and Gutierrez, Separable Subsurface Scattering, report
 // RR-02-12), in a kernel of a work-item per pixel: the radial profile itself as one-dimensional weights, quadratic
-// spacing, linear interpolation of light and nearest depth, and taps off the surface mixed towards the centre.
+// spacing, linear interpolation of light and nearest depth, and taps off the surface mixed towards the centre. On a
+// picture, which has several materials, it is the oracle that follows them.
 #include <algorithm>
 #include <cmath>
 
+#include "dermis/oracle/rule_2012.hpp"
 #include "opponents/opencl_passes.hpp"
 
 namespace dermis::bench {
@@ -66,7 +68,7 @@ PassTaps slice_taps(int count) {
     const double before = taps.offsets_mm[std::max(i - 1, 0)];
     const double after = taps.offsets_mm[std::min(i + 1, count - 1)];
     for (int c = 0; c < 3; ++c) {
-      constexpr double middle_mm = 1e-6;  // R is asked for beside its centre
+      constexpr double middle_mm = 1e-6;  // Profile::radial wants a distance above 0
       weights[i][c] = (after - before) / 2 * skin().radial(c, std::max(std::abs(taps.offsets_mm[i]), middle_mm));
       sum[c] += weights[i][c];
     }
@@ -78,9 +80,37 @@ PassTaps slice_taps(int count) {
   return taps;
 }
 
+class OracleRule final : public Opponent {
+ public:
+  OracleRule(const Case& what, const Scene& scene) : scene_(scene), count_(what.design.count) {
+    for (const Material& material : scene.materials) {
+      const Profile& profile = material.profile;
+      slices_.push_back({material.id, [&profile](int channel, double r_mm) { return profile.radial(channel, r_mm); },
+                         profile.half_width(profile.widest_channel(), 0.999)});
+    }
+  }
+
+  void run() override {
+    const oracle::Picture picture = oracle::rule_2012(scene_.frame(nullptr), slices_, count_);
+    planes_.resize(picture.values.size());
+    for (std::size_t i = 0; i < planes_.size(); ++i) {
+      planes_[i % 3 * scene_.pixels() + i / 3] = static_cast<float>(picture.values[i]);
+    }
+  }
+
+  std::vector<float> result() override { return planes_; }
+
+ private:
+  const Scene& scene_;
+  int count_;
+  std::vector<oracle::SliceMaterial> slices_;
+  std::vector<float> planes_;
+};
+
 }  // namespace
 
 std::unique_ptr<Opponent> make_rule_2012(const Case& what, const Scene& scene, const Device& device) {
+  if (what.is_on_picture()) return std::make_unique<OracleRule>(what, scene);
   return std::make_unique<OpenclPasses>(source, slice_taps(what.design.count), static_cast<float>(1 / full_mix_mm),
                                         scene, device);
 }

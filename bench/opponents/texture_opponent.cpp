@@ -1,6 +1,6 @@
-// The scene as a texture whose texels all span as much: dermis in texture space.
+// dermis in texture space: the scene is a texture whose texels all span as much.
 #include "dermis/texture.hpp"
-#include "measure/aligned.hpp"
+#include "measure/aligned_floats.hpp"
 #include "opponents/opponents.hpp"
 
 namespace dermis::bench {
@@ -17,15 +17,11 @@ class Texture final : public Opponent {
         scattered_(3 * scene.pixels()) {}
 
   void run() override {
-    const Layout planar = {.format = Format::f32,
-                           .channel_stride = static_cast<std::ptrdiff_t>(scene_.pixels() * sizeof(float)),
-                           .pixel_stride = 4,
-                           .row_stride = 4L * scene_.spec.width};
     plan_.run({.width = scene_.spec.width,
                .height = scene_.spec.height,
-               .light = {.host = scene_.light.data(), .layout = planar},
+               .light = {.host = scene_.light.data(), .layout = scene_.layout},
                .mm_per_texel = 1 / scene_.px_per_mm(),
-               .scattered = {.host = scattered_.data(), .layout = planar}});
+               .scattered = {.host = scattered_.data(), .layout = scene_.layout}});
   }
 
   std::vector<float> result() override { return {scattered_.begin(), scattered_.end()}; }

@@ -16,10 +16,22 @@ std::string listed(std::vector<std::string> names) {
 
 }  // namespace
 
-std::string verdict_of(const std::vector<std::string>& holds_for, const std::vector<std::string>& fails_for) {
-  if (fails_for.empty()) return "holds";
-  if (holds_for.empty()) return "does not hold";
-  return fmt::format("holds for {}, not for {}", listed(holds_for), listed(fails_for));
+void Evidence::add(const std::string& name, const std::string& text, const Json& numbers, bool holds) {
+  texts_.push_back(name + ": " + text);
+  numbers_[name] = numbers;
+  (holds ? holds_for_ : fails_for_).push_back(name);
+}
+
+std::string Evidence::verdict() const {
+  if (fails_for_.empty() || holds_for_.empty()) return verdict_of(fails_for_.empty());
+  return fmt::format("holds for {}, not for {}", listed(holds_for_), listed(fails_for_));
+}
+
+Claim Evidence::claim(const std::string& id, const std::string& where, const std::string& text, const std::string& test,
+                      const std::string& introduction) const {
+  const std::string measured =
+      fmt::format("{}{}{}", introduction, introduction.empty() ? "" : "<br>", fmt::join(texts_, "<br>"));
+  return {id, where, text, test, measured, verdict(), numbers_};
 }
 
 std::string percent(double share) {
@@ -45,8 +57,8 @@ std::string table_of(const Claims& claims) {
   return text;
 }
 
-nlohmann::ordered_json json_of(const Claims& claims) {
-  nlohmann::ordered_json all;
+Json json_of(const Claims& claims) {
+  Json all;
   for (const Claim& claim : claims) {
     all[claim.id] = {{"where", claim.where},
                      {"claim", claim.text},

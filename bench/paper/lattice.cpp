@@ -137,7 +137,7 @@ Products products_of(const TapSet& taps) {
         const int at = static_cast<int>(below);
         // Both sides of the centre meet where a tap reads the pixel 0.
         const double sides = below == 0 && share_of_next > 0 ? 2 : 1;
-        // What lies beyond the square belongs to its last pixel, as that of the profile does.
+        // Light beyond the square belongs to its last pixel, as that of the profile does.
         product.f[std::min(at, half_px - 1)] += sides * weight * (1 - share_of_next);
         product.f[std::min(at + 1, half_px - 1)] += weight * share_of_next;
       }

@@ -21,7 +21,7 @@ struct Product {
   Eigen::VectorXd f;
 };
 
-/// A sum of products per channel: what separable passes can do.
+/// A sum of products per channel: the kernels that separable passes can have.
 using Products = std::array<std::vector<Product>, 3>;
 
 /// The light of an even kernel on the pixels 0..half_px by 0..half_px; per channel.
@@ -33,10 +33,10 @@ struct Sample {
   Profile profile;
   double pixel_mm = 0;
   Light exact;     ///< unit sum over the square; the outermost row takes all that lies beyond it
-  Light spectrum;  ///< of `exact`, at the frequencies 0..half_px by 0..half_px
+  Light spectrum;  ///< cosine sums of `exact` at the frequencies 0..half_px by 0..half_px
 };
 
-/// `width_mm` is to be `width_px` pixels.
+/// Samples a profile on pixels of such a size that `width_mm` are `width_px` pixels.
 Sample make_sample(const std::string& name, const Profile& profile, double width_mm, double width_px);
 
 /// The standard deviation along an axis of the channel that spreads furthest.
@@ -51,12 +51,12 @@ Eigen::MatrixXd light_of(const std::vector<Product>& products);
 double sum_of(const Eigen::VectorXd& row);
 double sum_of(const std::vector<Product>& products);
 
-/// The kernel summed over y: what it does to light that changes along x only.
+/// The kernel summed over y: its effect on light that changes along x only.
 Eigen::VectorXd row_sums(const std::vector<Product>& products);
 Eigen::VectorXd row_sums(const Eigen::MatrixXd& light);
 
-/// What a step of height 1 between the pixels -1 and 0 becomes, at the pixels -half_px..half_px - 1, for a kernel with
-/// these row sums.
+/// The light at the pixels -half_px..half_px - 1 after a kernel with these row sums has spread a step of height 1
+/// between the pixels -1 and 0.
 Eigen::VectorXd step_response(const Eigen::VectorXd& row_sums);
 
 /// The profile summed along lines, on every pixel (Jimenez et al. 2015, eq. 5).

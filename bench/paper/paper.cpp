@@ -2,12 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
-
 #include "dermis/error.hpp"
 #include "dermis/version.hpp"
-#include "paper/plot.hpp"
+#include "files/output_file.hpp"
 #include "paper/study.hpp"
+#include "report/gnuplot.hpp"
 
 namespace dermis::bench {
 
@@ -24,13 +23,7 @@ constexpr const char* introduction =
     "*dipole-marble* dipoles of media of Jensen et al. 2001. The paper's own profiles and pictures are not public "
     "here, and where it gives no number, what counts as holding is our choice. Nothing here is about time.\n\n";
 
-void write(const std::filesystem::path& path, const std::string& text) {
-  std::ofstream file(path);
-  file << text;
-  if (!file.flush()) throw Error(ErrorCode::output, "--paper", path.string(), "a file to write");
-}
-
-/// Better known before the work than after it.
+/// Fails before the work if it cannot be written into.
 void make_folder(const std::filesystem::path& folder) {
   if (folder.string().find('\n') != std::string::npos) {
     throw Error(ErrorCode::output, "--paper", folder.string(), "a name without line ends");
@@ -40,41 +33,36 @@ void make_folder(const std::filesystem::path& folder) {
   if (!std::filesystem::is_directory(folder, ignored)) {
     throw Error(ErrorCode::output, "--paper", folder.string(), "a folder to write into");
   }
-  write(folder / "table.md", "");
+  program::check_writable("--paper", folder / "table.md");
 }
-
-void append(Claims& claims, const Claims& more) { claims.insert(claims.end(), more.begin(), more.end()); }
 
 }  // namespace
 
 std::string reproduce_paper(const std::filesystem::path& folder,
                             const std::function<void(const std::string&)>& report) {
-  need_gnuplot();
+  program::need_gnuplot("--paper");
   make_folder(folder);
   const Study study = make_study(folder, report);
+  constexpr std::pair<const char*, Claims (*)(const Study&)> parts[] = {{"figure 2: singular values", fig2},
+                                                                        {"figure 4: low ranks", fig4},
+                                                                        {"figure 5: slices", fig5},
+                                                                        {"figure 7: a step", fig7},
+                                                                        {"table 2: the artist's fits", table2},
+                                                                        {"equation 5: edges at an angle", edges},
+                                                                        {"figure 11: taps", fig11},
+                                                                        {"appendix A: guided kernels", guided}};
   Claims claims;
-  report("figure 2: singular values");
-  append(claims, fig2(study));
-  report("figure 4: low ranks");
-  append(claims, fig4(study));
-  report("figure 5: slices");
-  append(claims, fig5(study));
-  report("figure 7: a step");
-  append(claims, fig7(study));
-  report("table 2: the artist's fits");
-  append(claims, table2(study));
-  report("equation 5: edges at an angle");
-  append(claims, edges(study));
-  report("figure 11: taps");
-  append(claims, fig11(study));
-  report("appendix A: guided kernels");
-  append(claims, guided(study));
+  for (const auto& [what, claims_of] : parts) {
+    report(what);
+    const Claims more = claims_of(study);
+    claims.insert(claims.end(), more.begin(), more.end());
+  }
 
   const std::string table = introduction + table_of(claims);
-  write(folder / "table.md", table);
-  const nlohmann::ordered_json object = {
+  program::write_text("--paper", folder / "table.md", table);
+  const Json object = {
       {"version", DERMIS_VERSION}, {"width_px", width_px}, {"side_px", side_px}, {"claims", json_of(claims)}};
-  write(folder / "claims.json", object.dump(2) + "\n");
+  program::write_text("--paper", folder / "claims.json", object.dump(2) + "\n");
   return table;
 }
 

@@ -1,4 +1,4 @@
-// What Jimenez et al. 2015 ("Separable Subsurface Scattering") claim, beside what is measured.
+// The claims of Jimenez et al. 2015 ("Separable Subsurface Scattering") beside measurements.
 #pragma once
 
 #include <filesystem>

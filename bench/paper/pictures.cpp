@@ -1,55 +1,20 @@
 #include "paper/pictures.hpp"
 
-#include <fftw3.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <random>
+
+#include "inputs/natural_picture.hpp"
 
 namespace dermis::bench {
 
 namespace {
 
-using Spectrum = std::vector<std::complex<double>>;
-
 constexpr std::size_t pixels = static_cast<std::size_t>(side_px) * side_px;
-
-void transform(Spectrum& values, int direction) {
-  auto* data = reinterpret_cast<fftw_complex*>(values.data());
-  const fftw_plan plan = fftw_plan_dft_2d(side_px, side_px, data, data, direction, FFTW_ESTIMATE);
-  fftw_execute(plan);
-  fftw_destroy_plan(plan);
-}
 
 std::size_t at(int y, int x) { return static_cast<std::size_t>(y) * side_px + static_cast<std::size_t>(x); }
 
-int mirrored(int i) { return std::min(i, side_px - i); }
-
-std::vector<double> natural_picture(std::uint32_t seed) {
-  std::mt19937 engine(seed);
-  std::normal_distribution<double> normal;
-  Spectrum noise(pixels);
-  for (int y = 0; y < side_px; ++y) {
-    for (int x = 0; x < side_px; ++x) {
-      const double frequency = std::hypot(mirrored(x), mirrored(y));
-      const double real = normal(engine);
-      const double imaginary = normal(engine);
-      noise[at(y, x)] = frequency > 0 ? std::complex<double>(real, imaginary) / frequency : 0;
-    }
-  }
-  transform(noise, FFTW_BACKWARD);
-  double squares = 0;
-  for (const auto& value : noise) squares += value.real() * value.real();
-  // The exponential of s times a normal number has a standard deviation of sqrt(exp(s^2) - 1) times its mean.
-  const double strength = std::sqrt(std::log(1.25) * static_cast<double>(pixels) / squares);
-  std::vector<double> picture;
-  picture.reserve(pixels);
-  for (const auto& value : noise) picture.push_back(std::exp(strength * value.real()));
-  return picture;
-}
-
-/// How much of a pixel whose centre lies `distance` px inside a half-plane is in it.
+/// The share of a pixel that is in a half-plane whose edge lies `distance` px from the pixel's centre.
 double coverage(double distance, double angle) {
   // The integral of a box along the normal, seen through a box along each axis.
   const double wide = std::abs(std::cos(angle)) + std::abs(std::sin(angle));
@@ -66,16 +31,14 @@ double coverage(double distance, double angle) {
 Pictures::Pictures() : power_(Eigen::MatrixXd::Zero(half_px + 1, half_px + 1)) {}
 
 void Pictures::add(const std::vector<double>& picture) {
-  Spectrum spectrum(picture.begin(), picture.end());
-  transform(spectrum, FFTW_FORWARD);
-  for (int y = 0; y < side_px; ++y) {
-    for (int x = 0; x < side_px; ++x) power_(mirrored(y), mirrored(x)) += std::norm(spectrum[at(y, x)]);
-  }
+  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  const std::vector<double> power = power_of(picture, side_px);
+  power_ += Eigen::Map<const RowMajor>(power.data(), half_px + 1, half_px + 1);
 }
 
 Pictures Pictures::natural(int count, std::uint32_t seed) {
   Pictures result;
-  for (int i = 0; i < count; ++i) result.add(natural_picture(seed + static_cast<std::uint32_t>(i)));
+  for (int i = 0; i < count; ++i) result.add(natural_picture(side_px, seed + static_cast<std::uint32_t>(i)));
   return result;
 }
 
@@ -126,7 +89,7 @@ Edge::Edge(double angle_degrees) {
       spectrum_[at(y, x)] = std::clamp(coverage(distance, angle), 0.0, 1.0);
     }
   }
-  transform(spectrum_, FFTW_FORWARD);
+  to_frequencies(spectrum_, side_px);
 }
 
 double Edge::max_error(const Products& products, const Sample& sample) const {
@@ -138,9 +101,10 @@ double Edge::max_error(const Products& products, const Sample& sample) const {
     const Eigen::MatrixXd difference = spectrum_of(products[c]) - sample.spectrum[c];
     Spectrum error(pixels);
     for (int y = 0; y < side_px; ++y) {
-      for (int x = 0; x < side_px; ++x) error[at(y, x)] = spectrum_[at(y, x)] * difference(mirrored(y), mirrored(x));
+      for (int x = 0; x < side_px; ++x)
+        error[at(y, x)] = spectrum_[at(y, x)] * difference(mirrored(y, side_px), mirrored(x, side_px));
     }
-    transform(error, FFTW_BACKWARD);
+    to_pixels(error, side_px);
     for (int y = first; y < last; ++y) {
       for (int x = first; x < last; ++x) {
         largest = std::max(largest, std::abs(error[at(y, x)].real()) / static_cast<double>(pixels));

@@ -2,10 +2,10 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <complex>
 #include <cstdint>
 #include <vector>
 
+#include "inputs/spectrum.hpp"
 #include "paper/lattice.hpp"
 
 namespace dermis::bench {
@@ -14,14 +14,14 @@ namespace dermis::bench {
 /// error of an even kernel depends on.
 class Pictures {
  public:
-  /// Exponentials of noise whose amplitude falls as 1 / frequency, with a standard deviation of half their mean.
+  /// Makes natural pictures (inputs/natural_picture.hpp) of the seeds from `seed` on.
   static Pictures natural(int count, std::uint32_t seed);
-  /// One bright disc on black.
+  /// Makes one bright disc on black.
   static Pictures dot(double radius_px);
 
   /// Relative L2 distance of what the products make of the pictures from what the profile does, all channels together.
   double rel_l2(const Products& products, const Sample& sample) const;
-  /// The same, from what other products make of them.
+  /// Relative L2 distance from what other products make of the pictures.
   double rel_l2(const Products& products, const Products& truth) const;
 
  private:
@@ -42,7 +42,7 @@ class Edge {
   double max_error(const Products& products, const Sample& sample) const;
 
  private:
-  std::vector<std::complex<double>> spectrum_;
+  Spectrum spectrum_;
 };
 
 }  // namespace dermis::bench

@@ -7,11 +7,11 @@ namespace dermis::bench {
 namespace {
 
 /// The standard deviation of the widest of the six Gaussians.
-const double skin_width_mm = std::sqrt(7.41);
+const double skin_deviation_mm = std::sqrt(7.41);
 
 Sample sample_of(const std::string& name, double width_in_px) {
   const Profile& profile = preset(name).profile;
-  const double width_mm = name == "skin" ? skin_width_mm : axis_deviation_mm(profile, profile.widest_channel());
+  const double width_mm = name == "skin" ? skin_deviation_mm : axis_deviation_mm(profile, profile.widest_channel());
   return make_sample(name, profile, width_mm, width_in_px);
 }
 

@@ -1,4 +1,4 @@
-// What the claims are measured on, and the figures that measure them.
+// The profiles and pictures that the claims are measured on, and the figures that measure them.
 #pragma once
 
 #include <filesystem>
@@ -10,7 +10,7 @@
 
 namespace dermis::bench {
 
-/// A profile at the main width, and what several figures need of it.
+/// A profile at the main width, with the models that several figures need.
 struct Medium {
   Sample sample;
   Products rank_1;  ///< pre-integrated
@@ -29,17 +29,18 @@ struct Study {
 
 inline constexpr double width_px = 16;
 inline constexpr double dot_radius_px = 3;
+inline constexpr const char* channel_names[] = {"red", "green", "blue"};
 
-/// `report` is told what is going on.
+/// Makes all of it. `report` is told what is going on.
 Study make_study(const std::filesystem::path& folder, const std::function<void(const std::string&)>& report);
 
-// Each draws its figure and judges its claims.
+// Each of these draws its figure and judges its claims.
 Claims fig2(const Study& study);
 Claims fig4(const Study& study);
 Claims fig5(const Study& study);
 Claims fig7(const Study& study);
 Claims fig11(const Study& study);
-// Without a figure.
+// These judge claims without a figure.
 Claims table2(const Study& study);
 Claims edges(const Study& study);
 Claims guided(const Study& study);

@@ -11,7 +11,7 @@ struct Svd {
 
   /// The first `rank` terms, as they are.
   Products truncated(int rank) const;
-  /// The same, each channel scaled so that it keeps all light.
+  /// The first `rank` terms, each channel scaled so that it keeps all light.
   Products renormalised(int rank) const;
 };
 

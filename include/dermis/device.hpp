@@ -14,14 +14,14 @@ using cl_device_id = struct _cl_device_id*;
 
 namespace dermis {
 
-/// What an OpenCL device says of itself.
+/// The properties that an OpenCL device reports.
 struct DeviceInfo {
   std::string name;
   std::string platform;
   std::string driver;
   std::string type;  ///< "CPU", "GPU", "accelerator" or "other"
   int compute_units = 0;
-  int vector_width = 1;  ///< float lanes that the kernels are built for
+  int vector_width = 1;  ///< the kernels are built for so many float lanes: 1, 4, 8 or 16
   std::uint64_t memory_bytes = 0;
   std::uint64_t max_buffer_bytes = 0;
 };

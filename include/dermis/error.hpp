@@ -7,7 +7,7 @@
 
 namespace dermis {
 
-/// What kind of thing went wrong. The values are the exit codes of the `dermis` program.
+/// Kinds of error. The values are the exit codes of the `dermis` program.
 enum class ErrorCode {
   usage = 2,              ///< an argument is outside what is allowed
   input_missing = 3,      ///< a file that should be read is not there

@@ -1,4 +1,4 @@
-/// Where the pixels of one G-buffer lie, and the camera that saw them.
+/// A G-buffer: the places of its pixels in memory, and the camera that saw them.
 #pragma once
 
 #include <cstddef>
@@ -9,7 +9,7 @@ using cl_mem = struct _cl_mem*;
 
 namespace dermis {
 
-/// How one value is stored.
+/// Formats of a value.
 enum class Format : std::uint8_t { f16, f32, u8, u16, u32 };
 
 constexpr std::size_t bytes_of(Format format) {
@@ -24,8 +24,8 @@ constexpr std::size_t bytes_of(Format format) {
   }
 }
 
-/// How the values of an image follow each other. A stride of 0 means packed: channels of a pixel
-/// side by side, then pixels, then rows. Strides may be negative; the offset is that of pixel (0, 0).
+/// The order of the values of an image in memory. A stride of 0 means packed: channels of a pixel side by side, then
+/// pixels, then rows. Strides may be negative; the offset is that of pixel (0, 0).
 struct Layout {
   Format format = Format::f32;
   std::ptrdiff_t channel_stride = 0;  ///< bytes

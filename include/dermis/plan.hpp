@@ -1,7 +1,9 @@
-/// All that is slow, done once: kernels built for what a frame holds, taps placed and uploaded.
+/// A plan does once all that is slow: it builds the kernels for the images that frames have, and places and uploads the
+/// taps.
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -14,6 +16,7 @@
 #include "dermis/frame.hpp"
 #include "dermis/profile.hpp"
 #include "dermis/taps.hpp"
+#include "dermis/words.hpp"
 
 struct _cl_command_queue;
 struct _cl_event;
@@ -27,6 +30,12 @@ struct Material {
   int id = 0;  ///< 0..65535; ignored if the frame has no material ids
   Profile profile;
   std::optional<TapsDesign> taps = {};  ///< in place of Options::taps
+  /// Size of a pixel on the surface, mm, at the median depth of its pixels: what taps with a tolerance are chosen for.
+  /// 1e-12..1e12; 0: not known, so that a kernel radius of 64 pixels is assumed.
+  double pixel_mm = 0;
+  /// Size of a pixel at the nearest depth, mm: no taps are placed for kernels that are wider there than twice their
+  /// radius, which saves time and changes no light. 0: not known.
+  double finest_pixel_mm = 0;
 
   bool operator==(const Material&) const = default;
 };
@@ -37,9 +46,13 @@ enum class Method {
   disc,       ///< samples of that integral on a disc about each pixel, as DiscOptions says
 };
 
-/// How Method::disc samples the surface integral (Golubev 2018). The distances of samples from a pixel are those within
-/// which even shares of the widest channel's light leave, their directions turn by the golden angle from each to the
-/// next, and by a random angle per pixel. A sample weighs R(distance on the surface) / density, times how much more
+template <>
+inline constexpr std::array<Named<Method>, 3> word_table<Method> = {
+    {{Method::separable, "separable"}, {Method::exact, "exact"}, {Method::disc, "disc"}}};
+
+/// Method::disc samples the surface integral on discs (Golubev 2018). The distances of samples from a pixel are those
+/// within which even shares of the widest channel's light leave, their directions turn by the golden angle from each to
+/// the next, and by a random angle per pixel. A sample weighs R(distance on the surface) / density, times how much more
 /// surface than disc there is under it, over the sum of weights; what lies on other materials is left out. The pixel's
 /// own light weighs as the profile integrated over its patch, and the samples share the light beyond.
 ///
@@ -62,26 +75,41 @@ struct DiscOptions {
   bool operator==(const DiscOptions&) const = default;
 };
 
-/// What Frame::light holds.
+/// The kind of light in Frame::light.
 enum class Lighting {
   raw,  ///< irradiance: the albedo is not in it
   lit,  ///< irradiance times albedo; where an albedo is below 1e-4 the irradiance counts as 0
 };
 
-/// What becomes of a pixel whose light or albedo is not finite. It never gives light to another.
+template <>
+inline constexpr std::array<Named<Lighting>, 2> word_table<Lighting> = {
+    {{Lighting::raw, "raw"}, {Lighting::lit, "lit"}}};
+
+/// The output of a pixel whose light or albedo is not finite. Such a pixel never gives light to another.
 enum class BadPixels {
-  keep,   ///< it is left as it is
-  zero,   ///< its outputs are 0
+  keep,   ///< the pixel is left as it is
+  zero,   ///< the outputs of the pixel are 0
   error,  ///< the run fails and writes nothing; not for enqueue
 };
 
+template <>
+inline constexpr std::array<Named<BadPixels>, 3> word_table<BadPixels> = {
+    {{BadPixels::keep, "keep"}, {BadPixels::zero, "zero"}, {BadPixels::error, "error"}}};
+
+/// The choices of a plan. With a quality or a tolerance, of which there is one at most and only with the separable
+/// method, every material gets as few taps as that takes: see choose_taps.
 struct Options {
   Method method = Method::separable;
-  TapsDesign taps = {.rank = 2};  ///< of every material that does not have its own
-  DiscOptions disc = {};          ///< of Method::disc, which has no taps
+  std::optional<Quality> quality = {};
+  /// Predicted error to be content with, below 1, as a number; if no taps are that good, the method is exact. 0: none.
+  double tolerance = 0;
+  /// The design of every material that does not have its own. A quality or a tolerance takes neither rank nor count
+  /// from it.
+  TapsDesign taps = {.rank = 2};
+  DiscOptions disc = {};  ///< of Method::disc, which has no taps
   /// The vertical pass crosses the horizontal one at a right angle on the surface instead of on the screen: see Taps.
   /// About half the error where a surface is tilted both ways, for up to twice the time of the blocks that are; it
-  /// counts only if there is depth, and no jitter.
+  /// counts only if there is depth, no jitter, and no quality or tolerance of 2 % and more.
   bool sheared = true;
   double jitter = 0;       ///< share of the kernel radius within which taps are rotated per pixel, 0..1
   std::uint32_t seed = 0;  ///< of the rotation, of taps or of discs
@@ -96,6 +124,26 @@ struct Options {
   bool operator==(const Options&) const = default;
 };
 
+/// Materials and options once a quality, a tolerance and sizes of pixels have chosen their taps.
+struct ChosenTaps {
+  std::vector<Material> materials;  ///< with designs of their own, and without sizes of pixels
+  Options options;                  ///< without a quality and a tolerance
+  std::vector<std::size_t> missed;  ///< the materials whose taps all miss the tolerance, and which have the best ones
+};
+
+/// The choice that Plan makes, so that its plan is that of the result. Quality::reference is the exact method. Any
+/// other quality and a tolerance take design_within(tolerance, taps) for materials without a design of their own. Where
+/// a design has a tolerance and Material::pixel_mm is known, choose_design decides about it. Throws Error(usage) for
+/// what is out of range or contradicts.
+ChosenTaps choose_taps(std::vector<Material> materials, Options options);
+
+/// The taps of a material for pixels of one size.
+struct MaterialTaps {
+  TapsDesign design;            ///< with its rank
+  int count = 0;                ///< per pass
+  double predicted_rel_l2 = 0;  ///< as TapSet::predicted_rel_l2
+};
+
 /// The images that the frames of a plan have. No code is built for what they do not have.
 struct FrameDescription {
   bool depth = false;
@@ -106,18 +154,11 @@ struct FrameDescription {
   bool normal = false;
 
   /// The description of a frame.
-  static FrameDescription of(const Frame& frame) {
-    return {.depth = static_cast<bool>(frame.depth),
-            .material = static_cast<bool>(frame.material),
-            .mask = static_cast<bool>(frame.mask),
-            .albedo = static_cast<bool>(frame.albedo),
-            .matte = static_cast<bool>(frame.matte),
-            .normal = static_cast<bool>(frame.normal)};
-  }
+  static FrameDescription of(const Frame& frame);
   bool operator==(const FrameDescription&) const = default;
 };
 
-/// What became of a tile.
+/// The way in which a run filtered or skipped a tile.
 enum class TileKind : std::uint8_t {
   without_material,  ///< skipped: no pixel has a material
   narrow,            ///< skipped: every kernel is narrower than half a pixel
@@ -128,21 +169,31 @@ enum class TileKind : std::uint8_t {
   curved,            ///< filtered
   reused,            ///< skipped: nothing within reach has changed since the frame before
 };
-inline constexpr int tile_kinds = 8;
 
-/// What became of each tile, row by row.
+template <>
+inline constexpr std::array<Named<TileKind>, 8> word_table<TileKind> = {
+    {{TileKind::without_material, "without_material"},
+     {TileKind::narrow, "narrow"},
+     {TileKind::unlit, "unlit"},
+     {TileKind::uniform, "uniform"},
+     {TileKind::flat, "flat"},
+     {TileKind::smooth, "smooth"},
+     {TileKind::curved, "curved"},
+     {TileKind::reused, "reused"}}};
+
+/// The tiles of a run.
 struct TileMap {
   int tile_width = 0;   ///< px
-  int tile_height = 0;  ///< px; fitted to what scatters and how far, unless the options say it
+  int tile_height = 0;  ///< px; fitted to the pixels that scatter and to their taps, unless the options give it
   int columns = 0;
   int rows = 0;
-  std::vector<TileKind> kinds;
+  std::vector<TileKind> kinds;  ///< row by row
 };
 
-/// What one run did. Times are of the device, in milliseconds.
+/// Times and counts of one run. Times are those of the device, in milliseconds.
 struct Stats {
   double prepare_ms = 0;   ///< memory, images bound to the device
-  double classify_ms = 0;  ///< materials and shape of blocks
+  double classify_ms = 0;  ///< materials and classes of blocks
   double scatter_ms = 0;   ///< the passes, and all reading and writing of images that they do
   double finish_ms = 0;    ///< outputs that had to wait for the passes
   double total_ms = 0;     ///< wall clock, transfers included
@@ -184,8 +235,8 @@ class Event {
   cl_event event_;
 };
 
-/// What one frame of a sequence leaves for the next one: the light after scattering, 12 bytes per pixel, and a hash of
-/// the inputs of each 16 x 16 pixels. For one thread at a time.
+/// The data that one frame of a sequence leaves for the next one: the light after scattering, 12 bytes per pixel, and a
+/// hash of the inputs of each 16 x 16 pixels. For one thread at a time.
 class Reuse {
  public:
   Reuse();
@@ -217,15 +268,23 @@ class Plan {
   /// Returns without writing anything if `progress` returned false.
   Stats run(const Frame& frame, const Progress& progress = {}) const;
 
-  /// The same for the next frame of a sequence: tiles of which nothing within reach has changed since the last run with
-  /// `reuse` take the light of that run, with the same bits. All is computed if there was none, if it was of another
-  /// plan, size, camera or scale or failed, and always if the method is not separable or the device works pixel by
-  /// pixel. Bad pixels are counted, and refused, in tiles that are filtered.
+  /// Filters the next frame of a sequence: tiles of which nothing within reach has changed since the last run with
+  /// `reuse` take the light of that run, with the same bits. All tiles are computed if there was no such run, if it was
+  /// of another plan, size, camera or scale or failed, and always if the method is not separable or the device works
+  /// pixel by pixel. Bad pixels are counted, and refused, in tiles that are filtered.
   Stats run(const Frame& frame, Reuse& reuse, const Progress& progress = {}) const;
 
-  /// Puts the same work on the caller's queue, which is of the plan's context and device, to start after the events in
-  /// `wait_for`. All images are buffers. Never blocks.
+  /// Puts the work of `run` on the caller's queue, which is of the plan's context and device, to start after the events
+  /// in `wait_for`. All images are buffers. Never blocks. Throws Error(usage) also if an image is in host memory, or if
+  /// bad pixels are to be errors.
   Event enqueue(const Frame& frame, cl_command_queue queue, std::span<const cl_event> wait_for = {}) const;
+
+  /// The options with what a quality or a tolerance has made of them.
+  const Options& options() const;
+
+  /// The taps of the material of this number, from 0, for pixels of this size; 0: for a kernel radius of 64 pixels.
+  /// Throws Error(usage) if the method has no taps, or there is no such material or size.
+  MaterialTaps taps_of(std::size_t material, double pixel_mm = 0) const;
 
   /// Bytes of device memory that a run needs beyond the images of the caller.
   std::size_t scratch_bytes(int width, int height) const;

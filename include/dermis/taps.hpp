@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "dermis/profile.hpp"
+#include "dermis/words.hpp"
 
 namespace dermis {
 
@@ -19,6 +20,14 @@ enum class Model {
   optimised,       ///< rank 1: least error on natural images; rank 2, 3: a(x) and zero-sum corrections to it
 };
 
+template <>
+inline constexpr std::array<Named<Model>, 6> word_table<Model> = {{{Model::pre_integrated, "pre-integrated"},
+                                                                   {Model::artist, "artist"},
+                                                                   {Model::guided, "guided"},
+                                                                   {Model::svd, "svd"},
+                                                                   {Model::gaussians, "gaussians"},
+                                                                   {Model::optimised, "optimised"}}};
+
 /// A way to place the taps of a pass.
 enum class Placement {
   uniform,     ///< at equal distances
@@ -27,11 +36,38 @@ enum class Placement {
   optimised,   ///< positions and weights together make the error on natural images least; as importance beyond 65 taps
 };
 
+template <>
+inline constexpr std::array<Named<Placement>, 4> word_table<Placement> = {{{Placement::uniform, "uniform"},
+                                                                           {Placement::importance, "importance"},
+                                                                           {Placement::quadratic, "quadratic"},
+                                                                           {Placement::optimised, "optimised"}}};
+
 /// The points that a pass can read.
 enum class Fetch {
   integer,  ///< at whole pixels only
   linear,   ///< anywhere, by linear interpolation of two neighbours
 };
+
+template <>
+inline constexpr std::array<Named<Fetch>, 2> word_table<Fetch> = {
+    {{Fetch::integer, "integer"}, {Fetch::linear, "linear"}}};
+
+/// The error that taps may have at most, as TapSet::predicted_rel_l2.
+enum class Quality {
+  draft,      ///< 5 %
+  preview,    ///< 2 %
+  final,      ///< 0.6 %
+  reference,  ///< not at all: the exact method, which takes some hundred times as long
+};
+
+template <>
+inline constexpr std::array<Named<Quality>, 4> word_table<Quality> = {{{Quality::draft, "draft"},
+                                                                       {Quality::preview, "preview"},
+                                                                       {Quality::final, "final"},
+                                                                       {Quality::reference, "reference"}}};
+
+/// The error that a quality allows, as a share of the light: 0.05, 0.02, 0.006, or 0 for the reference.
+double tolerance_of(Quality quality);
 
 /// A choice of taps for a profile.
 struct TapsDesign {
@@ -82,6 +118,23 @@ int highest_rank(Model model);
 /// hold for; 0: the kernel has a radius of 64 of them. Throws Error(usage) if the design is out of range, or `pixel_mm`
 /// neither 0 nor in 1e-12..1e12.
 TapsDesign with_rank(const Profile& profile, const TapsDesign& design, double pixel_mm = 0);
+
+/// The design with its rank and its taps left to a tolerance above 0: rank 0, and at most 33 taps, for with more of
+/// them fits are slow. choose_design allows more where they are needed.
+TapsDesign design_within(double tolerance, TapsDesign design = {});
+
+/// A design for pixels of one size, and the predicted error of the fewest of its taps that will do there.
+struct DesignChoice {
+  TapsDesign design;
+  double predicted_rel_l2 = 0;
+};
+
+/// The first design that meets the tolerance of `wanted` for pixels of that size, or the best one if none does: of
+/// `wanted.count` taps and one rank after the other, from that of with_rank on, then of 65 taps and the highest rank. A
+/// rank that `wanted` has stays. A profile whose width follows albedo or mask is taken at its widest, where the error
+/// is largest. Throws Error(usage) if the design is out of range or has no tolerance, or `pixel_mm` is not in
+/// 1e-12..1e12.
+DesignChoice choose_design(const Profile& profile, const TapsDesign& wanted, double pixel_mm);
 
 /// Taps for one pixel size; of the fewest taps that meet the tolerance, if the design has one. Throws Error(usage) if
 /// the design is out of range, or `pixel_mm` not in 1e-12..1e12.

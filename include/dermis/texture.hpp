@@ -12,6 +12,7 @@
 #include "dermis/device.hpp"
 #include "dermis/frame.hpp"
 #include "dermis/profile.hpp"
+#include "dermis/words.hpp"
 
 namespace dermis {
 
@@ -52,6 +53,10 @@ enum class TextureMethod {
   gaussians,  ///< a sum of six Gaussians, each made from the one before: see GaussianChain
   recursive,  ///< exponentials, in a time that does not depend on their length: see Recursion
 };
+
+template <>
+inline constexpr std::array<Named<TextureMethod>, 2> word_table<TextureMethod> = {
+    {{TextureMethod::gaussians, "gaussians"}, {TextureMethod::recursive, "recursive"}}};
 
 struct TextureOptions {
   TextureMethod method = TextureMethod::gaussians;

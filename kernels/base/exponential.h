@@ -1,7 +1,7 @@
-// e^-x, the same to the bit for any number of lanes: PoCL's built-in function is not, and takes vectors lane by lane.
+// e^-x, with the same bits for any number of lanes: PoCL's built-in function differs, and takes vectors lane by lane.
 #include "base/vector.h"
 
-// Adding it rounds to a whole number, which then stands in the lowest bits.
+// Adding this rounds to a whole number, which then stands in the lowest bits.
 #define ROUNDING 12582912.0f  // 3 2^22
 
 // e^-x for x >= 0, within 4 roundings: e^r by Taylor for |r| <= ln 2 / 2, times a power of 2. e^-85 beyond 85. For

@@ -7,7 +7,7 @@
 #error "TABLE_SHIFT: mantissa bits between two nodes"
 #endif
 
-// All channels at one squared distance per lane. The tables end with one node more than TableParams says.
+// Looks up all channels at one squared distance per lane. The tables end with one node more than TableParams says.
 static inline vrgb look_up_linear(global const float4* tables, struct TableParams table, vfloat r_squared) {
   const vint bits = clamp(as_vint(r_squared) - table.first_bits, (vint)(0), (vint)(table.last_bits));
   const vint index = (bits >> TABLE_SHIFT) + table.first;
@@ -28,7 +28,7 @@ static inline vrgb look_up_linear(global const float4* tables, struct TableParam
   return result;
 }
 
-// The table at r / k.
+// Looks up each channel at r / k, where k is the factor by which the channel is wider.
 static inline vrgb look_up_linear_scaled(global const float4* tables, struct TableParams table, vfloat r_squared,
                                          vrgb reciprocal) {
 #if PIXEL_WIDTH

@@ -1,4 +1,4 @@
-// Random rotation of the tap axes (Jimenez et al. 2015, section 6): integers only, so that every device agrees.
+// Random rotation of the tap axes (Jimenez et al. 2015, section 6), in integers only, so that every device agrees.
 #include "base/vector.h"
 
 // An index of RotationParams for each pixel: a mix of its position and the seed by the finalizer of MurmurHash3.

@@ -5,14 +5,20 @@
 
 #pragma OPENCL FP_CONTRACT OFF
 
-// What depends on an argument that is known where it is called.
+// Without AVX-512, Clang warns at every call that passes 16 lanes: how they are passed depends on the processor's
+// features. Every call is within one program, and PoCL's built-in functions are compiled for the same processor.
+#ifdef __clang__
+#pragma clang diagnostic ignored "-Wpsabi"
+#endif
+
+// Such a function depends on an argument that is constant where it is called.
 #ifdef __OPTIMIZE__
 #define FORCED_INLINE static inline __attribute__((always_inline))
 #else
 #define FORCED_INLINE static inline  // checkers of unoptimised kernels trip over what inlining leaves behind
 #endif
 
-// What is called from several places: code that is there once is built sooner.
+// Such a function is called from several places: code that exists once is built sooner.
 #define SHARED static __attribute__((noinline))
 
 #define JOIN_(a, b) a##b
@@ -47,7 +53,7 @@ typedef struct {
   vfloat r, g, b;
 } vrgb;
 
-// Through vector pointers of weak alignment, because PoCL takes vload16 apart.
+// Loads go through vector pointers of weak alignment, because PoCL takes vload16 apart.
 #if V > 1
 typedef vfloat unaligned_floats __attribute__((aligned(4)));
 typedef JOIN(uchar, V) unaligned_bytes __attribute__((aligned(1)));
@@ -77,10 +83,10 @@ static inline void store_bytes(global uchar* p, vint value) {
 #endif
 }
 
-// p is aligned to V floats. A store through a vector pointer, because PoCL splits vstore16 in four.
+// p is aligned to V floats. The store goes through a vector pointer, because PoCL splits vstore16 in four.
 FORCED_INLINE void store_floats(global float* p, vfloat value) { *(global vfloat*)p = value; }
 
-// How many values a lane can pick from.
+// A table has so many values.
 #define LOOKUP_SIZE 32
 
 #if V == 16 && defined(__AVX512F__)
@@ -91,7 +97,7 @@ typedef float native_floats __attribute__((__vector_size__(32)));
 typedef int native_ints __attribute__((__vector_size__(32)));
 #endif
 
-// Of the LOOKUP_SIZE floats at p, each lane its own.
+// Each lane looks up one of the LOOKUP_SIZE floats at p.
 FORCED_INLINE vfloat table_lookup(global const float* p, vint index) {
 #if V == 16 && defined(__AVX512F__)
   const native_floats low = __builtin_astype(load_floats(p), native_floats);
@@ -116,7 +122,7 @@ FORCED_INLINE vfloat table_lookup(global const float* p, vint index) {
 #endif
 }
 
-// The same of bytes.
+// Each lane looks up one of the LOOKUP_SIZE bytes at p.
 FORCED_INLINE vint table_lookup_bytes(global const uchar* p, vint index) {
 #if V == 16 && defined(__AVX512F__)
   const native_ints low = __builtin_astype(load_bytes(p), native_ints);
@@ -131,7 +137,7 @@ FORCED_INLINE vint table_lookup_bytes(global const uchar* p, vint index) {
 #endif
 }
 
-// Of whole numbers.
+// The values are whole numbers.
 FORCED_INLINE vint convert_vint(vfloat value) {
 #if V == 1
   return (int)value;
@@ -192,7 +198,7 @@ static inline vint int_lane_numbers(void) {
 #endif
 }
 
-// Whether any bit of any lane is set. PoCL's any_bit() tests lane after lane.
+// Whether any bit of any lane is set. PoCL's any() tests lane after lane.
 FORCED_INLINE int any_bit(vint v) {
 #if V == 1
   return v != 0;
@@ -210,7 +216,7 @@ FORCED_INLINE int any_bit(vint v) {
 #endif
 }
 
-// Keeps the lanes where the mask is set, zeroes the others whatever they hold.
+// Keeps the lanes where the mask is set and zeroes the others, even if they are not finite.
 FORCED_INLINE vfloat select_or_zero(vint mask, vfloat value) { return as_vfloat(as_vint(value) & mask); }
 
 FORCED_INLINE vrgb select_or_zero_rgb(vint mask, vrgb value) {

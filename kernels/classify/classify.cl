@@ -1,22 +1,23 @@
-// survey: which material each pixel has, and what the surface of each block is like. One work-item has a run of blocks.
+// classify_blocks finds the material of each pixel and the surface of each block, choose_passes what each pass does in
+// a block. A work-item has a run of blocks.
 #include "base/vector.h"
 #include "classify/tap_level.h"
 #include "frame/coverage.h"
-#include "frame/image.h"
+#include "frame/inputs.h"
 #include "frame/shear.h"
 
-// How many blocks before their turn the images are fetched.
+// The images are fetched into the caches so many blocks before their turn.
 #define BLOCKS_AHEAD 6
 
 // One row of a block.
 typedef struct {
-  vint material;  // as a byte of the plane
+  vint material;  // as a byte of the plane of material ids
   vfloat depth;   // mm; 0 where there is no material
 #if HAS_MATTE
-  vint partial;  // whether the material covers only a part
+  vint partial;  // mask of the pixels that their material covers only in part
 #endif
 #if PIXEL_WIDTH
-  vrgb k;
+  vrgb k;  // factor of the profile's width
 #endif
 } PixelRow;
 
@@ -39,43 +40,37 @@ static inline vint find_material(vfloat id, global const struct MaterialParams* 
   return found;
 }
 
-// Only the images that have a role here; light and the outputs have none.
-typedef struct {
-  global const uchar *albedo, *depth, *material, *mask, *matte;
-  struct ImageParams albedo_at, depth_at, material_at, mask_at, matte_at;
-} ClassifyInputs;
-
-// Values of a row that is direct: they are floats side by side, and V of them in the frame.
+// Reads V pixels of a row. `direct` rows are floats side by side, and all V of them lie in the frame.
 FORCED_INLINE vfloat read_row_values(Row row, int x, const int direct) {
   return direct ? load_floats((global const float*)row.at + x) : read_values(row, x);
 }
 
-static inline int is_direct(const struct FrameParams* f, const ClassifyInputs* in, int x) {
+static inline int is_direct(const struct FrameParams* f, const FrameInputs* in, int x) {
 #if PIXEL_WIDTH || HAS_MATTE
   return 0;
 #endif
   int direct = x + V <= f->width;
 #if HAS_DEPTH
-  direct = direct && is_planar(&in->depth_at);
+  direct = direct && is_planar(&in->layouts->depth);
 #endif
 #if HAS_MATERIAL
-  direct = direct && is_planar(&in->material_at);
+  direct = direct && is_planar(&in->layouts->material);
 #endif
   return direct;
 }
 
-FORCED_INLINE PixelRow read_row(const struct FrameParams* f, const ClassifyInputs* in,
+FORCED_INLINE PixelRow read_row(const struct FrameParams* f, const FrameInputs* in,
                                 global const struct MaterialParams* materials, int x, int y, const int direct) {
   PixelRow row;
   row.material = (vint)(1);
 #if HAS_MATERIAL
-  row.material =
-      find_material(read_row_values(row_of(in->material, &in->material_at, f->width, y, 0), x, direct), materials);
+  row.material = find_material(read_row_values(row_of(in->material, &in->layouts->material, f->width, y, 0), x, direct),
+                               materials);
 #endif
   if (!direct) row.material &= AS_MASK(x + int_lane_numbers() < (vint)(f->width));
   row.depth = (vfloat)(0.0f);
 #if HAS_DEPTH
-  const vfloat units = read_row_values(row_of(in->depth, &in->depth_at, f->width, y, 0), x, direct);
+  const vfloat units = read_row_values(row_of(in->depth, &in->layouts->depth, f->width, y, 0), x, direct);
   row.material &= AS_MASK(units < 1e9f) & AS_MASK(units > (f->slope_x > 0.0f ? 0.0f : -INFINITY));
   row.depth = units * f->mm_per_unit;
 #endif
@@ -83,12 +78,12 @@ FORCED_INLINE PixelRow read_row(const struct FrameParams* f, const ClassifyInput
   row.k = broadcast_rgb((vfloat)(1.0f));
   vfloat mask = (vfloat)(1.0f);
 #if HAS_MASK
-  mask = read_values(row_of(in->mask, &in->mask_at, f->width, y, 0), x);
+  mask = read_values(row_of(in->mask, &in->layouts->mask, f->width, y, 0), x);
   row.material &= AS_MASK(mask > 0.0f) & AS_MASK(isfinite(mask));
 #endif
   vrgb albedo = broadcast_rgb((vfloat)(1.0f));
 #if HAS_ALBEDO
-  const RgbRow albedo_row = rgb_row_of(in->albedo, &in->albedo_at, f->width, y);
+  const RgbRow albedo_row = rgb_row_of(in->albedo, &in->layouts->albedo, f->width, y);
   albedo = read_rgb(&albedo_row, x);
 #endif
   for (int i = 0; i < MATERIALS; ++i) {
@@ -98,13 +93,13 @@ FORCED_INLINE PixelRow read_row(const struct FrameParams* f, const ClassifyInput
     row.k = select_rgb(row.k, k, mine);
 #if HAS_ALBEDO
     if (materials[i].width_follows_albedo) {
-      row.material &= ~mine | (AS_MASK(isfinite(albedo.r)) & AS_MASK(isfinite(albedo.g)) & AS_MASK(isfinite(albedo.b)));
+      row.material &= ~mine | is_finite(albedo);
     }
 #endif
   }
 #endif
 #if HAS_MATTE
-  const vfloat share = read_values(row_of(in->matte, &in->matte_at, f->width, y, 0), x);
+  const vfloat share = read_values(row_of(in->matte, &in->layouts->matte, f->width, y, 0), x);
   row.material &= AS_MASK(share > 0.0f) & AS_MASK(isfinite(share));
   row.partial = AS_MASK(row.material != 0) & AS_MASK(share < 1.0f);
 #endif
@@ -112,20 +107,19 @@ FORCED_INLINE PixelRow read_row(const struct FrameParams* f, const ClassifyInput
   return row;
 }
 
-// Processors do not see sixteen rows coming.
-static inline void fetch_row_ahead(const struct FrameParams* f, const ClassifyInputs* in, int x, int y) {
-  const int later_x = x + BLOCKS_AHEAD * BLOCK;
+// Fetches a row of a later block: processors do not foresee sixteen rows at a time.
+static inline void fetch_row_ahead(const struct FrameParams* f, const FrameInputs* in, int x, int y) {
 #if HAS_MATERIAL
-  const Row ids = row_of(in->material, &in->material_at, f->width, y, 0);
-  fetch_ahead(ids.at, ids.pixel_stride, later_x);
+  const Row ids = row_of(in->material, &in->layouts->material, f->width, y, 0);
+  fetch_ahead(ids.at, ids.pixel_stride, x + BLOCKS_AHEAD * BLOCK);
 #endif
 #if HAS_DEPTH
-  const Row depth = row_of(in->depth, &in->depth_at, f->width, y, 0);
-  fetch_ahead(depth.at, depth.pixel_stride, later_x);
+  const Row depth = row_of(in->depth, &in->layouts->depth, f->width, y, 0);
+  fetch_ahead(depth.at, depth.pixel_stride, x + BLOCKS_AHEAD * BLOCK);
 #endif
 }
 
-// No surface that is as deep counts as unbroken.
+// No surface is as deep: a block whose depth goes from minus to plus this counts as broken.
 #define BROKEN_MM 1e30f
 
 // fmin and fmax of numbers, without their care for NaN.
@@ -157,23 +151,23 @@ static inline int count_lanes(vint mask) {
   return -(c.x + c.y);
 }
 
-// What a block's pixels have in common.
+// The pixels of a block, summed up lane by lane.
 typedef struct {
   Range depth, along_x, along_y;
-  vfloat size_x, size_y;  // smallest ones of pixels that scatter, mm
-  vint scattered, narrow, partial;
-  uint scattering[4];  // as in BlockParams
+  vfloat size_x, size_y;            // of the smallest pixels that scatter, mm
+  vint scattered, narrow, partial;  // minus the number of rows, or a mask
+  uint scattering[4];               // as in BlockParams
 } Seen;
 
 static inline void see_material(Seen* seen, int index) { seen->scattering[index / 32] |= 1u << (index % 32); }
 
-// Without the last lane, whose next pixel is in another block.
+// Leaves out the last lane, whose next pixel is in another block.
 static inline Range without_last(Range a) {
   const Range range = {a.low.s0123456789abcdee, a.high.s0123456789abcdee};
   return range;
 }
 
-// A row of a block as if it were of one material without gaps.
+// Adds a row of a block as if it were of one material without gaps.
 FORCED_INLINE void see_row(Seen* seen, vfloat depth, vfloat above, int is_first) {
   seen->depth.low = lower(seen->depth.low, depth);
   seen->depth.high = higher(seen->depth.high, depth);
@@ -188,7 +182,7 @@ FORCED_INLINE void see_row(Seen* seen, vfloat depth, vfloat above, int is_first)
 #endif
 }
 
-// Whether none of such a block is narrow.
+// Tells whether no pixel of a block of one material is narrow.
 static inline int is_wide(const Seen* seen, const struct FrameParams* f, global const struct MaterialParams* its) {
   // Sizes grow with depth.
   const float high = highest(seen->depth.high);
@@ -205,10 +199,9 @@ static inline void finish_wide(Seen* seen, const struct FrameParams* f, int mate
   seen->along_x = without_last(seen->along_x);
 }
 
-// A row of any block. Returns its material with that of narrow pixels marked.
+// Adds a row of any block. Returns its material with NARROW_BIT where pixels are narrow.
 static inline vint see_mixed_row(Seen* seen, const struct FrameParams* f, global const struct MaterialParams* materials,
                                  const PixelRow* row, const PixelRow* above) {
-  const vint has_next = (vint)(-1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, 0);
   const vfloat nothing = (vfloat)(INFINITY);
   const vint m = row->material;
   const vfloat z = row->depth;
@@ -236,6 +229,7 @@ static inline vint see_mixed_row(Seen* seen, const struct FrameParams* f, global
     seen->size_y = lower(seen->size_y, select(nothing, PIXEL_WIDTH ? size_y_mm / widest : size_y_mm, scatters));
   }
 #if HAS_DEPTH && !PIXEL_WIDTH && !JITTER
+  const vint has_next = (vint)(-1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, 0);
   widen(&seen->depth, z, has_material);
   const vint next_material = m.s123456789abcdeff;
   widen(&seen->along_x, z.s123456789abcdeff - z, has_material & has_next & AS_MASK(next_material == m));
@@ -260,10 +254,10 @@ static inline void write_block(global struct BlockParams* block, const Seen* see
   block->narrow = count_lanes(seen->narrow);
 }
 
-// All rows of a block as if it were of one material without gaps that covers all pixels, and their material into the
-// plane. Returns that material, or -1 if it is not. With `direct` there is no call in the loop, before which registers
-// would be saved.
-FORCED_INLINE int see_block(Seen* seen, const struct FrameParams* f, const ClassifyInputs* in,
+// Adds all rows of a block as if it were of one material that covers all pixels, and writes their material into the
+// plane. Returns that material, or -1 if the block is not so. With `direct` there is no call in the loop, before which
+// registers would be saved.
+FORCED_INLINE int see_block(Seen* seen, const struct FrameParams* f, const FrameInputs* in,
                             global const struct MaterialParams* materials, int x, int y, int height,
                             global uchar* material_ids, const int direct) {
   vint others = (vint)(0);
@@ -284,7 +278,7 @@ FORCED_INLINE int see_block(Seen* seen, const struct FrameParams* f, const Class
   return any_bit(others) ? -1 : first.s0;
 }
 
-static inline void classify_block(const struct FrameParams* f, const ClassifyInputs* in,
+static inline void classify_block(const struct FrameParams* f, const FrameInputs* in,
                                   global const struct MaterialParams* materials, int block_x, int block_y,
                                   global uchar* material_ids, global struct BlockParams* block) {
   const Range nothing = {(vfloat)(INFINITY), (vfloat)(-INFINITY)};
@@ -313,7 +307,7 @@ static inline void classify_block(const struct FrameParams* f, const ClassifyInp
     }
     if (any_bit(seen.narrow)) block->material = 0;
     if (any_bit(seen.partial)) {
-      // What weighs less than it is long is looked at pixel by pixel, as a broken surface is.
+      // Taps on pixels that are covered in part need weights of their own, as those on a broken surface do.
       seen.depth.low = (vfloat)(-BROKEN_MM);
       seen.depth.high = (vfloat)(BROKEN_MM);
     }
@@ -321,13 +315,13 @@ static inline void classify_block(const struct FrameParams* f, const ClassifyInp
   write_block(block, &seen);
 }
 
-kernel void classify_blocks(struct FrameParams f, int blocks_per_item, global const struct MaterialParams* materials,
-                            global const uchar* albedo, struct ImageParams albedo_at, global const uchar* depth,
-                            struct ImageParams depth_at, global const uchar* material, struct ImageParams material_at,
-                            global const uchar* mask, struct ImageParams mask_at, global const uchar* matte,
-                            struct ImageParams matte_at, global uchar* material_ids,
+kernel void classify_blocks(struct FrameParams f, struct FrameLayouts layouts, global const uchar* albedo,
+                            global const uchar* depth, global const uchar* material, global const uchar* mask,
+                            global const uchar* matte, int blocks_per_item,
+                            global const struct MaterialParams* materials, global uchar* material_ids,
                             global struct BlockParams* blocks) {
-  const ClassifyInputs in = {albedo, depth, material, mask, matte, albedo_at, depth_at, material_at, mask_at, matte_at};
+  const FrameInputs in = {
+      .layouts = &layouts, .albedo = albedo, .depth = depth, .material = material, .mask = mask, .matte = matte};
   const int block_y = get_global_id(1);
   const int first = get_global_id(0) * blocks_per_item;
   const int last = min(first + blocks_per_item, f.blocks_x);
@@ -342,12 +336,11 @@ kernel void classify_blocks(struct FrameParams f, int blocks_per_item, global co
   }
 }
 
-// Of Taps in taps.hpp.
 #ifndef FLATNESS
-#error "FLATNESS"
+#error "FLATNESS: see Taps in taps.hpp"
 #endif
 #ifndef SMOOTHNESS
-#error "SMOOTHNESS"
+#error "SMOOTHNESS: see Taps in taps.hpp"
 #endif
 
 typedef struct {
@@ -355,29 +348,29 @@ typedef struct {
 } Interval;
 
 static inline void join(Interval* a, float low, float high) {
-  // Without the care of fmin for NaN.
+  // Unlike fmin, this does not care for NaN.
   a->low = low < a->low ? low : a->low;
   a->high = high > a->high ? high : a->high;
 }
 
-// 0 where nothing is known.
+// An interval without any value has the middle 0 and the range 0.
 static inline float middle(Interval a) { return a.low <= a.high ? 0.5f * (a.low + a.high) : 0.0f; }
 static inline float half_range(Interval a) { return a.low <= a.high ? 0.5f * (a.high - a.low) : 0.0f; }
 
-// Depths, and their changes to the next pixel along a pass and across it.
+// The surface of some blocks: depths, and their changes to the next pixel along a pass and across it, mm.
 typedef struct {
   Interval depth, along, across;
-} Shape;
+} DepthRange;
 
-static inline void join_block(Shape* block_class, global const struct BlockParams* its, int axis) {
-  join(&block_class->depth, its->depth_low, its->depth_high);
-  join(&block_class->along, axis == 0 ? its->along_x_low : its->along_y_low,
+static inline void join_block(DepthRange* range, global const struct BlockParams* its, int axis) {
+  join(&range->depth, its->depth_low, its->depth_high);
+  join(&range->along, axis == 0 ? its->along_x_low : its->along_y_low,
        axis == 0 ? its->along_x_high : its->along_y_high);
-  join(&block_class->across, axis == 0 ? its->along_y_low : its->along_x_low,
+  join(&range->across, axis == 0 ? its->along_y_low : its->along_x_low,
        axis == 0 ? its->along_y_high : its->along_x_high);
 }
 
-// How the camera sees a block along a pass, and across it.
+// The camera's view of a block, along a pass and across it.
 typedef struct {
   float ray_along, ray_across;      // change of position with depth along the ray through the middle
   float slope_along, slope_across;  // as in FrameParams
@@ -392,31 +385,32 @@ static inline BlockView view_of(const struct FrameParams* f, int block_x, int bl
   return axis == 0 ? x : y;
 }
 
-// |T|^2 in the middle of a shape, along the pass and so many pixels across it for each.
-static inline float squared_tangent(BlockView view, const Shape* block_class, float side) {
-  const float z = middle(block_class->depth);
-  const float g = middle(block_class->along) + side * middle(block_class->across);
+// The squared length of surface that a step of one pixel along the pass, and `side` pixels across it, covers in the
+// middle of a range, mm^2.
+static inline float squared_tangent(BlockView view, const DepthRange* range, float side) {
+  const float z = middle(range->depth);
+  const float g = middle(range->along) + side * middle(range->across);
   const float along = view.mm_along + view.slope_along * z + view.ray_along * g;
   const float across = side * (view.mm_across + view.slope_across * z) + view.ray_across * g;
   return along * along + across * across + g * g;
 }
 
-static inline int shape_of(BlockView view, const Shape* block_class, float side, int along_px, int across_px) {
-  const float dz = half_range(block_class->depth);
-  const float dg = half_range(block_class->along) + fabs(side) * half_range(block_class->across);
+static inline int class_of(BlockView view, const DepthRange* range, float side, int along_px, int across_px) {
+  const float dz = half_range(range->depth);
+  const float dg = half_range(range->along) + fabs(side) * half_range(range->across);
   const float change_along = view.slope_along * dz + fabs(view.ray_along) * dg;
   const float change_across = fabs(side) * view.slope_across * dz + fabs(view.ray_across) * dg;
-  const float length2 = squared_tangent(view, block_class, side);
+  const float length2 = squared_tangent(view, range, side);
   const float change2 = change_along * change_along + change_across * change_across + dg * dg;
-  const float slopes = along_px * (fabs(middle(block_class->along)) + half_range(block_class->along)) +
-                       across_px * (fabs(middle(block_class->across)) + half_range(block_class->across));
+  const float slopes = along_px * (fabs(middle(range->along)) + half_range(range->along)) +
+                       across_px * (fabs(middle(range->across)) + half_range(range->across));
   if (!(2.0f * dz <= slopes + sqrt(length2))) return CLASS_CURVED;
   if (change2 <= FLATNESS * FLATNESS * length2) return CLASS_FLAT;
   return change2 <= SMOOTHNESS * SMOOTHNESS * length2 ? CLASS_SMOOTH : CLASS_CURVED;
 }
 
 // The shear of the vertical pass in the middle of a block, columns per row times 4096: see shear_of. `view` is along y.
-static inline int shear_of_block(BlockView view, const Shape* its) {
+static inline int shear_of_block(BlockView view, const DepthRange* its) {
   const float z = middle(its->depth);
   const float gx = middle(its->across);
   const float gy = middle(its->along);
@@ -427,7 +421,7 @@ static inline int shear_of_block(BlockView view, const Shape* its) {
   return fabs(shear) < INFINITY ? (int)rint(4096.0f * clamp(shear, -1.0f, 1.0f)) : 0;
 }
 
-// The farthest tap of the materials that a block scatters by, px.
+// The offset of the farthest tap of the materials that a block scatters by, px.
 static inline int farthest_tap_of(global const struct BlockParams* block, global const struct MaterialParams* materials,
                                   global const struct TapLevelParams* levels, float px_per_mm, int block_class) {
   int farthest = 0;
@@ -444,7 +438,7 @@ typedef struct {
   int y_begin, y_end;
 } BlockBox;
 
-// Those that lie at least partly within so many pixels of a block, along a pass and across it.
+// The blocks that lie at least partly within so many pixels of a block, along a pass and across it.
 static inline BlockBox blocks_around(const struct FrameParams* f, int block_x, int block_y, int axis, int along_px,
                                      int across_px) {
   const int x_px = axis == 0 ? along_px : across_px;
@@ -474,7 +468,7 @@ static inline int material_within(const struct FrameParams* f, global const stru
   return material;
 }
 
-// See Taps in taps.hpp.
+// Chooses what a pass does in a block, as Taps in taps.hpp says.
 static inline struct BlockPass pass_over(const struct FrameParams* f, global const struct MaterialParams* materials,
                                          global const struct TapLevelParams* levels,
                                          global const struct BlockParams* blocks, int block_x, int block_y, int axis) {
@@ -492,22 +486,22 @@ static inline struct BlockPass pass_over(const struct FrameParams* f, global con
   const int farthest_px = farthest_tap_of(own, materials, levels, pass.px_per_mm, CLASS_CURVED);
   const int reach_px = min(farthest_px + farthest_px / 8, max(f->width, f->height));
   const Interval nothing = {INFINITY, -INFINITY};
-  const Shape unseen = {nothing, nothing, nothing};
+  const DepthRange unseen = {nothing, nothing, nothing};
   const BlockView view = view_of(f, block_x, block_y, axis);
-  Shape within_block = unseen;
+  DepthRange within_block = unseen;
   join_block(&within_block, own, axis);
   if (SHEARED && axis == 1) pass.shear = shear_of_block(view, &within_block);
   const int side_px = side_of(abs(pass.shear), reach_px);
   if (side_px == 0) pass.shear = 0;
   const BlockBox box = blocks_around(f, block_x, block_y, axis, reach_px, side_px);
-  Shape within_reach = unseen;
+  DepthRange within_reach = unseen;
   for (int y = box.y_begin; y < box.y_end; ++y) {
     for (int x = box.x_begin; x < box.x_end; ++x) join_block(&within_reach, blocks + y * f->blocks_x + x, axis);
   }
   const int x_px = min(box.x_end * BLOCK, f->width) - box.x_begin * BLOCK;
   const int y_px = min(box.y_end * BLOCK, f->height) - box.y_begin * BLOCK;
   const float side = pass.shear / 4096.0f;
-  pass.block_class = shape_of(view, &within_reach, side, axis == 0 ? x_px : y_px, axis == 0 ? y_px : x_px);
+  pass.block_class = class_of(view, &within_reach, side, axis == 0 ? x_px : y_px, axis == 0 ? y_px : x_px);
   if (pass.block_class == CLASS_FLAT) {
     pass.px_per_mm = 1.0f / sqrt(squared_tangent(view, &within_reach, side));
   } else if (pass.block_class == CLASS_SMOOTH) {
@@ -527,7 +521,7 @@ static inline struct BlockPass pass_over(const struct FrameParams* f, global con
   return pass;
 }
 
-// Channels of a block that no tap is read for.
+// The number of channels of a block that no tap is read for.
 static inline int channels_left_alone(global const struct MaterialParams* materials,
                                       global const struct TapLevelParams* levels,
                                       global const struct BlockParams* block, struct BlockPass pass) {
@@ -554,8 +548,8 @@ kernel void choose_passes(struct FrameParams f, int blocks_per_item, global cons
     const int block = block_y * f.blocks_x + block_x;
     passes[block].x = pass_over(&f, materials, levels, blocks, block_x, block_y, 0);
     passes[block].y = pass_over(&f, materials, levels, blocks, block_x, block_y, 1);
-    const struct BlockPass down = passes[block].y;
-    reach = max(reach, farthest_tap_of(blocks + block, materials, levels, down.px_per_mm, down.block_class));
+    const struct BlockPass vertical = passes[block].y;
+    reach = max(reach, farthest_tap_of(blocks + block, materials, levels, vertical.px_per_mm, vertical.block_class));
     scattered += blocks[block].scattered;
     narrow += blocks[block].narrow;
     channels += blocks[block].scattered * min(channels_left_alone(materials, levels, blocks + block, passes[block].x),

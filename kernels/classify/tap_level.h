@@ -1,4 +1,4 @@
-// Which level of its level table a material takes: Taps in taps.hpp.
+// Finds the level that a material takes of its level table: see Taps in taps.hpp.
 #include "params.h"
 
 typedef struct {
@@ -6,7 +6,7 @@ typedef struct {
   int part;   // of the level, on a flat block
 } Step;
 
-// Steps of 1/16 octave in the bits of a float; on a flat block the nearest of the parts of those.
+// Levels are 1/16 octave apart, which the bits of a float tell; a flat block takes the nearest part of a level.
 static inline Step step_of(global const struct MaterialParams* its, float px_per_mm, int block_class) {
   const float radius_px = px_per_mm * its->radius_mm;
   const int bits = as_int(radius_px) - as_int(0.5f) + (block_class == CLASS_FLAT ? 1 << 15 : 0);
@@ -15,14 +15,14 @@ static inline Step step_of(global const struct MaterialParams* its, float px_per
   return step;
 }
 
-// How far its taps go, px.
+// The offset of the farthest tap of a material, px.
 static inline int last_offset_of(global const struct MaterialParams* its, global const struct TapLevelParams* levels,
                                  float px_per_mm, int block_class) {
   const int level = step_of(its, px_per_mm, block_class).level;
   return level >= 0 ? levels[its->first_level + level].last_offset_px : 0;
 }
 
-// Pairs in which all channels have a weight.
+// The number of pairs in which all channels have a weight.
 static inline int full_pairs_of(global const struct TapLevelParams* level) {
   return min(min(level->channel_pairs[0], level->channel_pairs[1]), level->channel_pairs[2]);
 }

@@ -1,4 +1,4 @@
-// The caller's images: any format, any strides.
+// Reads and writes the caller's images, in any format and with any strides.
 #include "base/vector.h"
 #include "params.h"
 
@@ -22,7 +22,7 @@ SHARED float value_at(global const uchar* at, int format) {
 }
 
 #if V > 1
-// V halves that are not side by side.
+// Reads V halves that are not side by side.
 SHARED vfloat read_half_lanes(global const uchar* at, int pixel_stride) {
   JOIN(ushort, V) bits;
 #define READ_LANE(lane) LANE(bits, lane) = *(global const ushort*)(at + (0x##lane) * (Bytes)pixel_stride);
@@ -31,7 +31,7 @@ SHARED vfloat read_half_lanes(global const uchar* at, int pixel_stride) {
   return JOIN(vload_half, V)(0, (const half*)&bits);
 }
 
-// V floats that are not side by side.
+// Reads V floats that are not side by side.
 SHARED vfloat read_float_lanes(global const uchar* at, int pixel_stride) {
   vfloat value;
 #define READ_LANE(lane) LANE(value, lane) = *(global const float*)(at + (0x##lane) * (Bytes)pixel_stride);
@@ -54,7 +54,7 @@ static inline Row row_of(global const uchar* image, const struct ImageParams* p,
   return row;
 }
 
-// V pixels of any format, those outside the frame 0.
+// Reads V pixels of any format one by one. Those outside the frame are 0.
 SHARED vfloat read_scattered(Row row, int x) {
   vfloat value = (vfloat)(0.0f);
 #define READ_LANE(lane)                                                           \
@@ -67,7 +67,7 @@ SHARED vfloat read_scattered(Row row, int x) {
   return value;
 }
 
-// V pixels from x on: those outside the frame are 0.
+// Reads the V pixels from x on. Those outside the frame are 0.
 FORCED_INLINE vfloat read_values(Row row, int x) {
 #if V > 1
   if (x >= 0 && x + V <= row.width) {
@@ -84,7 +84,7 @@ FORCED_INLINE vfloat read_values(Row row, int x) {
   return read_scattered(row, x);
 }
 
-// Whether an image's channels are planes of floats.
+// Tells whether an image's channels are planes of floats.
 static inline int is_planar(const struct ImageParams* p) { return p->format == FORMAT_F32 && p->pixel_stride == 4; }
 
 // The three channels of a row.
@@ -99,7 +99,7 @@ static inline RgbRow rgb_row_of(global const uchar* image, const struct ImagePar
   return row;
 }
 
-// Fetches into the caches what pixel x of a row needs.
+// Fetches pixel x of a row into the caches.
 FORCED_INLINE void fetch_ahead(global const uchar* row, int pixel_stride, int x) {
 #if defined(__OPTIMIZE__) && __has_builtin(__builtin_prefetch)
   __builtin_prefetch(row + x * (Bytes)pixel_stride);
@@ -113,7 +113,8 @@ FORCED_INLINE void fetch_rgb_ahead(const RgbRow* row, int x) {
 }
 
 #if V == 16
-// Whether the channels of a pixel follow each other, and the pixels, which may have more channels.
+// Tells whether the channels of a pixel follow each other, and so do the pixels, which may have more channels than
+// three.
 static inline int is_interleaved(const RgbRow* row, int format, int value_bytes, int channels) {
   return row->r.format == format && row->r.pixel_stride == channels * value_bytes &&
          row->g.at - row->r.at == value_bytes && row->b.at - row->r.at == 2 * value_bytes;
@@ -126,7 +127,7 @@ static inline int is_interleaved(const RgbRow* row, int format, int value_bytes,
 #endif
 
 #ifdef INTERLEAVES_FLOATS
-// Sixteen pixels of three floats each.
+// Reads sixteen pixels of three floats each.
 SHARED vrgb read_interleaved_floats(global const float* at) {
   const float16 p = load_floats(at), q = load_floats(at + 16), s = load_floats(at + 32);
   const float16 r = __builtin_shufflevector(p, q, 0, 3, 6, 9, 12, 15, 18, 21, 24, 27, 30, -1, -1, -1, -1, -1);
@@ -150,7 +151,7 @@ SHARED void write_interleaved_floats(global float* at, vrgb v) {
 
 #endif
 
-// Sixteen pixels of four halves each, the fourth of which nobody looks at.
+// Reads sixteen pixels of four halves each, without the fourth.
 SHARED vrgb read_interleaved_halves(global const uchar* at) {
   typedef ushort16 unaligned_halves __attribute__((aligned(2)));
   global const unaligned_halves* pixels = (global const unaligned_halves*)at;
@@ -181,7 +182,7 @@ SHARED vrgb read_any_rgb(const RgbRow* row, int x) {
   return value;
 }
 
-// V pixels in the frame, of planes of floats.
+// Reads V pixels of planes of floats, all in the frame.
 FORCED_INLINE vrgb read_planar_rgb(const RgbRow* row, int x) {
   const vrgb value = {load_floats((global const float*)row->r.at + x), load_floats((global const float*)row->g.at + x),
                       load_floats((global const float*)row->b.at + x)};
@@ -195,7 +196,7 @@ FORCED_INLINE vrgb read_rgb(const RgbRow* row, int x) {
   return read_any_rgb(row, x);
 }
 
-// Writes the lanes where the mask is set, one by one, the first at `at`. Loops, as 48 times the code is built late.
+// Writes the lanes where the mask is set, one by one, the first at `at`. It loops, for unrolled code is slow to build.
 SHARED void write_lanes(global uchar* at, int pixel_stride, int format, vfloat value, vint mask) {
 #if V == 1
   if (!mask) return;
@@ -230,7 +231,7 @@ SHARED void write_lanes(global uchar* at, int pixel_stride, int format, vfloat v
 #endif
 }
 
-// Writes the lanes where the mask is set; x is in the frame.
+// Writes the lanes where the mask is set; pixel x is in the frame.
 FORCED_INLINE void write_values(global uchar* image, const struct ImageParams* p, int x, int y, int channel,
                                 vfloat value, vint mask) {
   global uchar* at = image + byte_at(p, x, y, channel);

@@ -1,4 +1,4 @@
-// Albedo in and out of the light.
+// Takes the albedo out of the light, and puts it in.
 #include "base/vector.h"
 
 #ifndef LIT
@@ -8,7 +8,7 @@
 #error "HAS_ALBEDO"
 #endif
 
-// Below this the light of a lit image says nothing about the irradiance.
+// Where an albedo is smaller, the light of a lit image says nothing about the irradiance.
 #define SMALLEST_ALBEDO 1e-4f
 
 static inline vfloat power_of(vfloat albedo, float exponent) {
@@ -17,7 +17,7 @@ static inline vfloat power_of(vfloat albedo, float exponent) {
   return exponent == 1.0f ? positive : pow(positive, (vfloat)(exponent));
 }
 
-// albedo^exponent, 1 for exponent 0.
+// albedo^exponent; exponent 0 gives 1 for any albedo.
 static inline vrgb albedo_power(vrgb albedo, float exponent) {
   const vrgb result = {power_of(albedo.r, exponent), power_of(albedo.g, exponent), power_of(albedo.b, exponent)};
   return result;
@@ -38,7 +38,7 @@ static inline vrgb irradiance(vrgb light, vrgb albedo) {
 #endif
 }
 
-// What the diffuse light adds to the picture before scattering.
+// The part of the picture that is diffuse light, before scattering.
 static inline vrgb diffuse_part(vrgb light, vrgb albedo) {
 #if LIT
   return light;

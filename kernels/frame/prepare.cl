@@ -1,16 +1,20 @@
-// prepare: the caller's images into a window that is the frame. A work-item has a run of `columns` pixels of a row.
+// prepare: loads the caller's images into a window that is the frame. A work-item has a run of `columns` pixels of a
+// row.
 #pragma OPENCL FP_CONTRACT OFF
 #include "frame/load.h"
 
-// From PADDING before the frame to PADDING after it.
-kernel void prepare(struct FrameParams f, struct WindowParams window, global const struct MaterialParams* materials,
-                    global const uchar* material_ids, global const uchar* light, struct ImageParams light_at,
-                    global const uchar* albedo, struct ImageParams albedo_at, global const uchar* depth,
-                    struct ImageParams depth_at, global const uchar* mask, struct ImageParams mask_at,
-                    global const uchar* matte, struct ImageParams matte_at, global uchar* memory, long plane,
-                    int columns, global int* counters) {
-  const Inputs in = {light, albedo, depth, mask, matte, light_at, albedo_at, depth_at, mask_at, matte_at, material_ids};
-  const Window w = window_in(window, plane, 1, memory);
+// Rows reach from PADDING before the frame to PADDING after it.
+kernel void prepare(struct FrameParams f, struct FrameLayouts layouts, global const uchar* light,
+                    global const uchar* albedo, global const uchar* depth, global const uchar* mask,
+                    global const uchar* material_ids, global const struct MaterialParams* materials,
+                    struct WindowParams window, global uchar* memory, int columns, global int* counters) {
+  const FrameInputs in = {.layouts = &layouts,
+                          .light = light,
+                          .albedo = albedo,
+                          .depth = depth,
+                          .mask = mask,
+                          .material_ids = material_ids};
+  const Window w = window_in(&window, memory);
   const int y = get_global_id(1);
   const int x_begin = (int)get_global_id(0) * columns - PADDING;
   const InputRows rows = input_rows(&f, &in, y);

@@ -1,5 +1,5 @@
-// The vertical pass runs along (shear, 1), so that on the surface it crosses the horizontal one at a right angle: Taps
-// in taps.hpp. Turned taps do not.
+// The vertical pass runs along (shear, 1), so that on the surface it crosses the horizontal one at a right angle: see
+// Taps in taps.hpp. Taps that are rotated are not sheared.
 #include "base/vector.h"
 #include "params.h"
 
@@ -7,7 +7,7 @@
 #error "SHEARED"
 #endif
 
-// How many columns to the side of its pixel a tap is that lies so many rows below it, for a shear times 4096.
+// The columns between a pixel and its tap that lies `offset` rows below it. The shear is in columns per row times 4096.
 FORCED_INLINE int side_of(int shear, int offset) { return clamp((shear * offset + 2048) >> 12, -MOST_SIDE, MOST_SIDE); }
 
 FORCED_INLINE vint sides_of(vint shear, int offset) {

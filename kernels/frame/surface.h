@@ -1,8 +1,8 @@
-// The visible surface: where the points of pixels lie, mm.
+// Points of the visible surface, mm.
 #include "base/vector.h"
 #include "params.h"
 
-// V pixels of a row.
+// The points of V pixels of a row.
 typedef struct {
   vfloat z;        // view depth
   vfloat x_per_z;  // change of position with depth along the pixel's ray; 0 if orthographic
@@ -25,17 +25,17 @@ FORCED_INLINE vfloat squared_distance(const struct FrameParams* f, const Points*
   return fma(delta_x, delta_x, fma(delta_y, delta_y, delta_z * delta_z));
 }
 
-// The same for points of the row that lies `offset` pixels below, each of them so many columns to its side. To the side
-// 0 it gives the bits of squared_distance_along.
-FORCED_INLINE vfloat squared_distance_down(const struct FrameParams* f, const Points* p, vfloat z, vfloat side,
-                                           float offset) {
+// Squared true distance to points of the row that lies `offset` pixels below, each of them `side` columns to the side
+// of its pixel. Side 0 gives the bits of squared_distance_along.
+FORCED_INLINE vfloat squared_distance_vertical(const struct FrameParams* f, const Points* p, vfloat z, vfloat side,
+                                               float offset) {
   const vfloat delta_z = z - p->z;
   const vfloat down = fma(p->y_per_z, delta_z, offset * fma(z, (vfloat)(f->slope_y), (vfloat)(f->mm_per_px_y)));
   const vfloat across = fma(p->x_per_z, delta_z, side * fma(z, (vfloat)(f->slope_x), (vfloat)(f->mm_per_px_x)));
   return fma(down, down, fma(across, across, delta_z * delta_z));
 }
 
-// The same along one axis.
+// Squared true distance to points that lie `offset` pixels away along one axis.
 FORCED_INLINE vfloat squared_distance_along(const struct FrameParams* f, const Points* p, vfloat z, float offset,
                                             int axis) {
   const vfloat delta_z = z - p->z;

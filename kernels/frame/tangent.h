@@ -1,10 +1,10 @@
-// How depth and position change from pixel to pixel along a surface.
+// Changes of depth and position from pixel to pixel along a surface.
 #include "frame/shear.h"
 #include "frame/surface.h"
 #include "frame/window.h"
 
-// Change of depth per pixel along (dx, dy): the smaller one of the differences to both neighbours, 0 if they differ in
-// sign. A neighbour of another material does not count; without any the slope is 0.
+// Change of depth per pixel along (dx, dy), mm: the smaller one of the differences to both neighbours, 0 if they differ
+// in sign. A neighbour of another material does not count; without any the slope is 0.
 static inline vfloat depth_slope(const struct FrameParams* f, const Window* w, int x, int y, int dx, int dy) {
   const size_t at = pixel_at(w, x, y);
   const size_t before = y - dy < 0 ? at : pixel_at(w, x - dx, y - dy);
@@ -22,7 +22,7 @@ static inline vfloat depth_slope(const struct FrameParams* f, const Window* w, i
   return select_or_zero(AS_MASK(backward * forward > 0.0f), smaller);
 }
 
-// Change of position with one pixel along x, and along y.
+// Change of position with one pixel along x or y, mm.
 typedef struct {
   vfloat x, y, z;
 } Tangent;
@@ -41,26 +41,26 @@ static inline Tangent tangent_y(const struct FrameParams* f, const Points* p, vf
 
 static inline vfloat squared_length(Tangent t) { return fma(t.x, t.x, fma(t.y, t.y, t.z * t.z)); }
 
-// Of the patch of a pixel, whose sides they are.
+// The area of the patch of a pixel, mm^2: the tangents are its sides.
 static inline vfloat patch_area(Tangent x, Tangent y) {
   const Tangent normal = {x.y * y.z - x.z * y.y, x.z * y.x - x.x * y.z, x.x * y.y - x.y * y.x};
   return sqrt(squared_length(normal));
 }
 
 #if SHEARED
-// Columns per row: at a right angle to (1, 0).
+// The shear, in columns per row, that is at a right angle to (1, 0) on the surface.
 static inline vfloat shear_of(Tangent x, Tangent y) {
   const vfloat shear = -fma(x.x, y.x, fma(x.y, y.y, x.z * y.z)) / squared_length(x);
-  // Not a number where lengths underflow.
+  // It is not a number where lengths underflow.
   return select_or_zero(AS_MASK(fabs(shear) < INFINITY), clamp(shear, (vfloat)(-1.0f), (vfloat)(1.0f)));
 }
 
-// In columns per row, times 4096.
+// The shear of V pixels, in columns per row times 4096.
 static inline vint shear_at(const struct FrameParams* f, const Window* w, int x, int y) {
   const Points p = points_at(f, load_floats(w->depth + pixel_at(w, x, y)), x, y);
   const Tangent along_x = tangent_x(f, &p, depth_slope(f, w, x, y, 1, 0));
   const Tangent along_y = tangent_y(f, &p, depth_slope(f, w, x, y, 0, 1));
-  return whole(rint(4096.0f * shear_of(along_x, along_y)));
+  return convert_vint(rint(4096.0f * shear_of(along_x, along_y)));
 }
 #endif
 

@@ -1,14 +1,13 @@
-// texels, halve_texels, light_blocks, dark_blocks: what samples of a disc read, as pixels and as blocks of them, and
-// where there is no light for them to find.
+// texels and halve_texels make the pixels, and the squares of pixels, that samples of a disc read; light_blocks and
+// dark_blocks find the blocks where there is no light for them to find.
 #pragma OPENCL FP_CONTRACT OFF
 #include "frame/load.h"
 #include "frame/tangent.h"
 
 // A work-item has a run of `columns` pixels of a row.
-kernel void texels(struct FrameParams f, struct WindowParams window, global uchar* memory, long plane,
-                   global const uchar* matte, struct ImageParams matte_at, global struct TexelParams* texels,
-                   int columns) {
-  const Window w = window_in(window, plane, 1, memory);
+kernel void texels(struct FrameParams f, struct FrameLayouts layouts, global const uchar* matte,
+                   struct WindowParams window, global uchar* memory, global struct TexelParams* texels, int columns) {
+  const Window w = window_in(&window, memory);
   const int y = get_global_id(1);
   const int x_begin = get_global_id(0) * columns;
   for (int x = x_begin; x < min(x_begin + columns, f.width); ++x) {
@@ -18,7 +17,7 @@ kernel void texels(struct FrameParams f, struct WindowParams window, global ucha
     const float slope_y = depth_slope(&f, &w, x, y, 0, 1);
     float area = patch_area(tangent_x(&f, &p, slope_x), tangent_y(&f, &p, slope_y));
 #if HAS_MATTE
-    area *= share_of_surface(row_of(matte, &matte_at, f.width, y, 0), x);
+    area *= share_of_surface(row_of(matte, &layouts.matte, f.width, y, 0), x);
 #endif
     const vrgb light = load_rgb(w.light, w.plane, at);
     const struct TexelParams texel = {{light.r, light.g, light.b},   area, p.z, slope_x, slope_y,
@@ -27,40 +26,40 @@ kernel void texels(struct FrameParams f, struct WindowParams window, global ucha
   }
 }
 
-// How far, as a share of its side, a quarter of a block may lie off the plane of all.
+// A quarter of a square may lie off the plane of the square by this share of its side.
 #define MOST_BEND 0.25f
 
-// The block of four texels of the level before, which spans so many pixels. It has a material if all of them have, and
-// if they lie nearly in a plane.
-static inline struct TexelParams block_of(const struct TexelParams* four, int side_px) {
-  struct TexelParams block = {{0.0f, 0.0f, 0.0f}, 0.0f, 0.0f, 0.0f, 0.0f, four[0].material};
+// Makes a square of four texels of the level before. It has a material if all of them have that one, and if they lie
+// nearly in a plane.
+static inline struct TexelParams square_of(const struct TexelParams* four, int side_px) {
+  struct TexelParams square = {{0.0f, 0.0f, 0.0f}, 0.0f, 0.0f, 0.0f, 0.0f, four[0].material};
   for (int i = 0; i < 4; ++i) {
-    if (four[i].material != block.material) block.material = 0;
-    block.area += four[i].area;
-    block.depth += 0.25f * four[i].depth;
-    block.slope_x += 0.25f * four[i].slope_x;
-    block.slope_y += 0.25f * four[i].slope_y;
+    if (four[i].material != square.material) square.material = 0;
+    square.area += four[i].area;
+    square.depth += 0.25f * four[i].depth;
+    square.slope_x += 0.25f * four[i].slope_x;
+    square.slope_y += 0.25f * four[i].slope_y;
   }
-  if (block.material == 0 || !(block.area > 0.0f)) {
-    block.material = 0;
-    return block;
+  if (square.material == 0 || !(square.area > 0.0f)) {
+    square.material = 0;
+    return square;
   }
   for (int i = 0; i < 4; ++i) {
-    for (int c = 0; c < 3; ++c) block.light[c] += four[i].area / block.area * four[i].light[c];
+    for (int c = 0; c < 3; ++c) square.light[c] += four[i].area / square.area * four[i].light[c];
   }
-  block.area *= 0.25f;
+  square.area *= 0.25f;
   const float quarter_px = 0.25f * side_px;
-  const float most = MOST_BEND * side_px * sqrt(block.area);
+  const float most = MOST_BEND * side_px * sqrt(square.area);
   for (int i = 0; i < 4; ++i) {
     const float across = (i & 1) != 0 ? quarter_px : -quarter_px;
     const float down = (i & 2) != 0 ? quarter_px : -quarter_px;
-    const float plane = fma(across, block.slope_x, fma(down, block.slope_y, block.depth));
-    if (!(fabs(four[i].depth - plane) <= most)) block.material = 0;
+    const float plane = fma(across, square.slope_x, fma(down, square.slope_y, square.depth));
+    if (!(fabs(four[i].depth - plane) <= most)) square.material = 0;
   }
-  return block;
+  return square;
 }
 
-// Level `level` from the one before.
+// Makes a level of the one before it.
 kernel void halve_texels(struct FrameParams f, struct TexelLevels levels, int level, global struct TexelParams* texels,
                          int columns) {
   const int width = f.width >> level;
@@ -72,11 +71,11 @@ kernel void halve_texels(struct FrameParams f, struct TexelLevels levels, int le
   for (int x = x_begin; x < min(x_begin + columns, width); ++x) {
     const struct TexelParams four[4] = {above[2 * x], above[2 * x + 1], above[width_before + 2 * x],
                                         above[width_before + 2 * x + 1]};
-    row[x] = block_of(four, 1 << level);
+    row[x] = square_of(four, 1 << level);
   }
 }
 
-// Whether a pixel of a block gives light. A work-item has a block.
+// Finds the blocks of which a pixel gives light. A work-item has a block.
 kernel void light_blocks(struct FrameParams f, global const struct TexelParams* texels, global uchar* lit) {
   const int block_x = get_global_id(0);
   const int block_y = get_global_id(1);
@@ -90,13 +89,13 @@ kernel void light_blocks(struct FrameParams f, global const struct TexelParams* 
   lit[block_y * f.blocks_x + block_x] = any;
 }
 
-// Pixels along an axis that a disc of a block may reach: rays that are `apart` pixels from each other are as far apart
-// on any surface as that times the size of a pixel, over the length of the ray per depth.
+// The pixels along an axis that a disc of a block may reach: rays that are n pixels from each other are at least n
+// times the size of a pixel apart on any surface, over the length of the ray per depth.
 static inline int reach_px(float reach_mm, float px_per_mm, float ray_length, int most) {
   return (int)fmin(fma(reach_mm * px_per_mm, ray_length, 2.0f), (float)most);
 }
 
-// Whether no pixel within reach of a block gives light: behind what light_blocks wrote of all blocks.
+// Finds the blocks that no light reaches, and writes them behind all blocks that light_blocks wrote.
 kernel void dark_blocks(struct FrameParams f, global const struct DiscParams* discs,
                         global const struct BlockParams* blocks, global uchar* lit) {
   const int block_x = get_global_id(0);

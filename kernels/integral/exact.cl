@@ -1,9 +1,6 @@
-// slopes, exact: the surface integral over all visible pixels of a material,
+// slopes and exact compute the surface integral over all visible pixels of a material,
 //     M(p) = sum R(|P_p - P_q|) E(q) A(q) / sum R(|P_p - P_q|) A(q).
 #pragma OPENCL FP_CONTRACT OFF
-#include "base/linear_table.h"
-#include "frame/load.h"
-#include "frame/tangent.h"
 #include "integral/own_share.h"
 
 // Gauss-Legendre points and weights on [-1/2, 1/2].
@@ -15,11 +12,11 @@ constant float weights_4[4] = {0.173927423f, 0.326072577f, 0.326072577f, 0.17392
 #define NEAR_4 2
 #define NEAR_2 6
 
-// A work-item has a run of `columns` pixels of a row. geometry receives three planes: depth slopes in x and y, mm per
-// px, and the area of the pixel's patch, mm^2, times what it counts for.
-kernel void slopes(struct FrameParams f, struct WindowParams window, global uchar* memory, long plane,
-                   global const uchar* matte, struct ImageParams matte_at, global float* geometry, int columns) {
-  const Window w = window_in(window, plane, 1, memory);
+// A work-item has a run of `columns` pixels of a row. `geometry` receives three planes: depth slopes in x and y, mm per
+// px, and the area of the pixel's patch, mm^2, times the share of a surface that it counts as.
+kernel void slopes(struct FrameParams f, struct FrameLayouts layouts, global const uchar* matte,
+                   struct WindowParams window, global uchar* memory, global float* geometry, int columns) {
+  const Window w = window_in(&window, memory);
   const int y = get_global_id(1);
   const int x_begin = get_global_id(0) * columns;
   for (int x = x_begin; x < min(x_begin + columns, f.width); x += V) {
@@ -28,12 +25,12 @@ kernel void slopes(struct FrameParams f, struct WindowParams window, global ucha
     const vfloat slope_x = depth_slope(&f, &w, x, y, 1, 0);
     const vfloat slope_y = depth_slope(&f, &w, x, y, 0, 1);
     store_floats(geometry + at, slope_x);
-    store_floats(geometry + plane + at, slope_y);
+    store_floats(geometry + w.plane + at, slope_y);
     vfloat area = patch_area(tangent_x(&f, &p, slope_x), tangent_y(&f, &p, slope_y));
 #if HAS_MATTE
-    area *= share_of_surface(row_of(matte, &matte_at, f.width, y, 0), x);
+    area *= share_of_surface(row_of(matte, &layouts.matte, f.width, y, 0), x);
 #endif
-    store_floats(geometry + 2 * plane + at, area);
+    store_floats(geometry + 2 * w.plane + at, area);
   }
 }
 
@@ -43,12 +40,10 @@ typedef struct {
 } Sum;
 
 // R averaged over the patch of the pixels (dx, dy) away, by n x n quadrature points.
-static inline vrgb patch_average(const struct FrameParams* f, const Points* p, global const float4* tables,
-                                 struct TableParams radial, vrgb reciprocal, int dx, int dy, vfloat z, vfloat slope_x,
-                                 vfloat slope_y, int n) {
+static inline vrgb patch_average(const struct FrameParams* f, const Points* p, const Profile* profile, int dx, int dy,
+                                 vfloat z, vfloat slope_x, vfloat slope_y, int n) {
   if (n == 1) {
-    return look_up_linear_scaled(tables, radial, squared_distance(f, p, z, (vfloat)((float)dx), (vfloat)((float)dy)),
-                                 reciprocal);
+    return radial_at(profile, squared_distance(f, p, z, (vfloat)((float)dx), (vfloat)((float)dy)));
   }
   vrgb sum = {(vfloat)(0.0f), (vfloat)(0.0f), (vfloat)(0.0f)};
   for (int j = 0; j < n; ++j) {
@@ -58,7 +53,7 @@ static inline vrgb patch_average(const struct FrameParams* f, const Points* p, g
       const float weight = n == 2 ? 0.25f : weights_4[i] * weights_4[j];
       const vfloat r_squared =
           squared_distance(f, p, z + u * slope_x + v * slope_y, (vfloat)((float)dx + u), (vfloat)((float)dy + v));
-      add(&sum, times(look_up_linear_scaled(tables, radial, r_squared, reciprocal), weight));
+      add(&sum, times(radial_at(profile, r_squared), weight));
     }
   }
   return sum;
@@ -83,19 +78,29 @@ static inline int2 reach(const struct FrameParams* f, const Points* p, vint mask
   return result;
 }
 
-// The integral for the lanes of one material.
-static inline vrgb integrate(const Window* w, const struct FrameParams* f, const Points* p, vint mine, int m,
-                             global const struct MaterialParams* its, global const float4* tables,
-                             global const float* geometry, vrgb reciprocal, int x, int y) {
+// The frame that is integrated over.
+typedef struct {
+  const struct FrameParams* f;
+  const Window* window;
+  global const float* geometry;
+} Surface;
+
+// The integral for the lanes of material m.
+static inline vrgb integrate(const Surface* surface, const Points* p, const Profile* profile, vint mine, int m, int x,
+                             int y) {
+  const struct FrameParams* f = surface->f;
+  const Window* w = surface->window;
+  global const float* geometry = surface->geometry;
   const size_t at_p = pixel_at(w, x, y);
   const vrgb own_light = load_rgb(w->light, w->plane, at_p);
-  const vrgb own = own_share(f, p, tables, its->cumulated, reciprocal, load_floats(geometry + at_p),
-                             load_floats(geometry + w->plane + at_p), load_floats(geometry + 2 * w->plane + at_p));
+  const vrgb own = own_share(f, p, profile, load_floats(geometry + at_p), load_floats(geometry + w->plane + at_p),
+                             load_floats(geometry + 2 * w->plane + at_p));
   Sum sum = {product(own, own_light), own};
+  const vrgb reciprocal = profile->reciprocal;
   const vfloat widest = 1.0f / fmin(fmin(reciprocal.r, reciprocal.g), reciprocal.b);
-  const int2 extent = reach(f, p, mine, its->reach_mm * widest);
+  const int2 extent = reach(f, p, mine, profile->reach_mm * widest);
   for (int dy = max(-extent.y, -y); dy <= min(extent.y, f->height - 1 - y); ++dy) {
-    // A sum per row first: tens of thousands of terms in one float would lose digits.
+    // Each row has a sum of its own: tens of thousands of terms in one float would lose digits.
     const vrgb zero = broadcast_rgb((vfloat)(0.0f));
     Sum row = {zero, zero};
     for (int dx = max(-extent.x, 1 - V - x); dx <= min(extent.x, f->width - 1 - x); ++dx) {
@@ -105,8 +110,8 @@ static inline vrgb integrate(const Window* w, const struct FrameParams* f, const
       if (!any_bit(same)) continue;
       const int distance = max(abs(dx), abs(dy));
       const int n = distance <= NEAR_4 ? 4 : distance <= NEAR_2 ? 2 : 1;
-      const vrgb average = patch_average(f, p, tables, its->radial, reciprocal, dx, dy, load_floats(w->depth + at),
-                                         load_floats(geometry + at), load_floats(geometry + w->plane + at), n);
+      const vrgb average = patch_average(f, p, profile, dx, dy, load_floats(w->depth + at), load_floats(geometry + at),
+                                         load_floats(geometry + w->plane + at), n);
       const vrgb density = product(average, product(reciprocal, reciprocal));
       const vrgb weight = select_or_zero_rgb(same, times(density, load_floats(geometry + 2 * w->plane + at)));
       row.weight = sum_rgb(row.weight, weight);
@@ -119,10 +124,12 @@ static inline vrgb integrate(const Window* w, const struct FrameParams* f, const
   return result;
 }
 
-kernel void exact(struct FrameParams f, struct WindowParams window, int first_row,
-                  global const struct MaterialParams* materials, global const float4* tables, global uchar* memory,
-                  long plane, global const float* geometry, int columns, global float* deferred) {
-  const Window w = window_in(window, plane, 1, memory);
+// A work-item has a run of `columns` pixels of a row.
+kernel void exact(struct FrameParams f, struct WindowParams window, global uchar* memory,
+                  global const struct ProfileParams* profiles, global const float4* nodes, global const float* geometry,
+                  int first_row, int columns, global float* deferred) {
+  const Window w = window_in(&window, memory);
+  const Surface surface = {&f, &w, geometry};
   const int y = first_row + get_global_id(1);
   const int x_begin = get_global_id(0) * columns;
   for (int x = x_begin; x < min(x_begin + columns, f.width); x += V) {
@@ -134,9 +141,9 @@ kernel void exact(struct FrameParams f, struct WindowParams window, int first_ro
     for (int i = 0; i < MATERIALS; ++i) {
       const vint mine = AS_MASK(m == (vint)(i + 1));
       if (!any_bit(mine)) continue;
-      result = select_rgb(result, integrate(&w, &f, &p, mine, i + 1, materials + i, tables, geometry, reciprocal, x, y),
-                          mine);
+      const Profile profile = profile_of(profiles + i, nodes, reciprocal);
+      result = select_rgb(result, integrate(&surface, &p, &profile, mine, i + 1, x, y), mine);
     }
-    store_rgb(deferred, (size_t)f.stride * f.height, surface_at(&f, x, y), result);
+    store_deferred(&f, deferred, x, y, result);
   }
 }

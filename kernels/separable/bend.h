@@ -1,4 +1,4 @@
-// How a smooth surface differs from the plane of a level: q and k of Taps in taps.hpp.
+// The difference between a smooth surface and the plane of a level: q and k of Taps in taps.hpp.
 #include "frame/tangent.h"
 
 typedef struct {
@@ -42,8 +42,8 @@ FORCED_INLINE DepthChange depth_change(const struct FrameParams* f, const Window
   return result;
 }
 
-// How the slope along one axis changes along the other one, from the pixels before and after on the diagonal: 0 if one
-// of them is of another material.
+// The change of the slope along one axis with a step along the other one, from the pixels before and after on the
+// diagonal: 0 if one of them is of another material.
 FORCED_INLINE vfloat cross_change(const struct FrameParams* f, const Window* w, int x, int y, DepthChange along_x,
                                   DepthChange along_y, const int clean) {
   const size_t at = pixel_at(w, x, y);
@@ -60,7 +60,7 @@ FORCED_INLINE vfloat cross_change(const struct FrameParams* f, const Window* w, 
                         cross);
 }
 
-// Along a pass of that shear, which is 0 for the horizontal one.
+// The bend along a pass of that shear, which is 0 for the horizontal one.
 FORCED_INLINE Bend bend_at(const struct FrameParams* f, const Window* w, global const struct TapLevelParams* level,
                            int x, int y, int axis, int shear, const int clean) {
   const Points p = points_at(f, load_floats(w->depth + pixel_at(w, x, y)), x, y);

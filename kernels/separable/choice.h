@@ -1,4 +1,4 @@
-// How the pixels of a block are scattered in a pass.
+// Chooses the kernel and the weights that scatter the pixels of a block in a pass.
 #include "separable/scatter.h"
 
 static inline struct ChoiceParams choice_of(const struct FrameParams* f, const Tables* tables, int block_x, int block_y,

@@ -4,7 +4,7 @@
 #include "separable/octaves.h"
 #include "separable/pass.h"
 
-// What every tap of the lanes of one material needs on a curved surface.
+// The lanes of one material on a curved surface, as every tap needs them.
 typedef struct {
   Points points;
   vint material;    // 1 + its index, the same in all lanes
@@ -13,7 +13,7 @@ typedef struct {
   global const struct TermParams* terms;
 } Target;
 
-// What a tap of each lane falls on.
+// The surface and the light under a tap of each lane.
 typedef struct {
   vfloat r_squared;  // its true distance, mm^2
   vfloat segment;    // length of surface, mm; 0 where there is none to weigh
@@ -42,8 +42,7 @@ FORCED_INLINE void add_taps(Sums* sums, const Target* target, global const struc
   }
 }
 
-// How far the vertical pass is sheared in the lanes of a material: columns per row, times 4096. What other lanes have
-// does not count.
+// The shear of the vertical pass, columns per row times 4096. `low` and `high` are those of the lanes of a material.
 typedef struct {
   vint lanes;
   int low, high;
@@ -62,8 +61,8 @@ FORCED_INLINE Shears shears_at(const struct FrameParams* f, const Pass* s, vint 
 }
 
 #if SHEARED
-// The pixels so many rows away, each lane its own to the side, of one run of LOOKUP_SIZE pixels. Returns whether there
-// is another run.
+// Loads the pixels so many rows away, each lane with its own side, of one run of LOOKUP_SIZE pixels. Returns whether
+// there is another run.
 FORCED_INLINE int load_sheared(Tap* tap, const struct FrameParams* f, const Pass* s, const Target* target,
                                const Shears* shears, int x, int y, int offset, int run, const int clean) {
   const Window* w = s->from;
@@ -173,7 +172,7 @@ FORCED_INLINE void add_rotated(Sums* sums, const struct FrameParams* f, const Pa
   add_taps(sums, target, its, &tap);
 }
 
-// The axis of the pass, turned by each lane's angle, in 1/4096 px per px.
+// Turns the axis of the pass by the angle of each lane. The result is in 1/4096 px per px.
 FORCED_INLINE void rotated_axis(global const struct RotationParams* rotations, vint index, int axis, vint* dx,
                                 vint* dy) {
 #define READ_LANE(lane)                                           \
@@ -193,7 +192,7 @@ FORCED_INLINE int offset_of(global const int* offsets, int tap) {
   return tap % 2 == 0 ? -offset : offset;
 }
 
-// The lanes of one material on a curved surface. `clean`: all taps fall on it.
+// Scatters the lanes of one material on a curved surface. `clean`: all taps fall on it.
 FORCED_INLINE void scatter_curved(vrgb* result, const struct FrameParams* f, const Pass* s, const Tables* tables,
                                   global const struct TapLevelParams* level, global const struct TermParams* terms,
                                   vint material, int x, int y, const int clean) {

@@ -2,7 +2,7 @@
 #include "classify/tap_level.h"
 #include "separable/pass.h"
 
-// Pairs from `i` on, in which only some channels have weights.
+// Adds the pairs from `i` on, in which only some channels have weights.
 SHARED void add_last_pairs(vrgb* sums, const Pass* s, global const struct TapLevelParams* level,
                            global const int* offsets, global const struct FlatWeight* weights, int i, int x, int y) {
 #pragma nounroll
@@ -23,14 +23,14 @@ SHARED void add_last_pairs(vrgb* sums, const Pass* s, global const struct TapLev
   }
 }
 
-// So many vectors of pixels at a time: what is loaded for all of them is loaded less often.
+// A flat block is scattered so many vectors of pixels at a time, so that weights are loaded less often.
 #define AT_ONCE 2
 
 typedef struct {
   int x, y;
 } Pixel;
 
-// A flat block where every tap falls on the material.
+// Scatters a flat block where every tap falls on the material.
 FORCED_INLINE void scatter_clean(vrgb (*result)[TERMS], const Pass* s, global const struct TapLevelParams* level,
                                  global const int* offsets, global const struct FlatWeight* weights, const Pixel* p) {
 #pragma unroll
@@ -66,7 +66,7 @@ FORCED_INLINE void scatter_clean(vrgb (*result)[TERMS], const Pass* s, global co
   }
 }
 
-// A flat block where some taps fall on something else. With none it gives the same bits as scatter_clean.
+// Scatters a flat block where some taps fall on something else. Where none does, it gives the bits of scatter_clean.
 FORCED_INLINE void scatter_flat(vrgb* result, const struct FrameParams* f, const Pass* s, const Tables* tables,
                                 global const struct TapLevelParams* level, global const struct FlatWeight* weights,
                                 global const struct TermParams* terms, vint material, int x, int y) {

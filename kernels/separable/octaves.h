@@ -2,7 +2,7 @@
 #include "base/vector.h"
 #include "params.h"
 
-// Which octave, and where in it.
+// An octave, and a place in it: 0 <= t < 1.
 typedef struct {
   vint octave;
   vfloat t;

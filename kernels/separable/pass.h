@@ -1,4 +1,4 @@
-// One separable pass: what it reads, and its sums.
+// One separable pass: the tables and the pixels that it reads, and its sums.
 #include "frame/load.h"
 #include "frame/tangent.h"
 
@@ -6,7 +6,7 @@
 #error "TERMS: of every material; those that it does not have weigh nothing"
 #endif
 
-// What the host prepared.
+// The tables of the host, and the passes that classification chose.
 typedef struct {
   global const struct MaterialParams* materials;
   global const struct TermParams* terms;
@@ -20,8 +20,26 @@ typedef struct {
   uint seed;
 } Tables;
 
-// Where the taps of a vertical pass lie, made once for many pixels: those of pair i of the pixel (x, y), whose offset
-// is o, at x + row_at[y - o] + side_at[2 i] and x + row_at[y + o] + side_at[2 i + 1].
+static inline Tables tables_in(const struct TapTables* at, global const uchar* taps,
+                               global const struct MaterialParams* materials,
+                               global const struct TapLevelParams* levels,
+                               global const struct RotationParams* rotations, uint seed,
+                               global const struct BlockPasses* passes) {
+  const Tables tables = {materials,
+                         (global const struct TermParams*)(taps + at->terms),
+                         levels,
+                         (global const int*)(taps + at->offsets),
+                         (global const struct WeightParams*)(taps + at->weights),
+                         (global const struct FlatWeight*)(taps + at->flat_weights),
+                         (global const struct SmoothWeight*)(taps + at->smooth_weights),
+                         rotations,
+                         passes,
+                         seed};
+  return tables;
+}
+
+// Places of the taps of a vertical pass, made once for many pixels: the taps of pair i of the pixel (x, y), whose
+// offset is o, lie at x + row_at[y - o] + side_at[2 i] and x + row_at[y + o] + side_at[2 i + 1].
 typedef struct {
   global const int* row_at;
   global const int* side_at;
@@ -51,12 +69,12 @@ FORCED_INLINE int tap_x(const Pass* s, int x, int offset) {
   return s->axis == 0 ? x + offset : x + side_of(s->shear, offset);
 }
 
-// The pixel an offset away.
+// The index of the pixel an offset away.
 FORCED_INLINE size_t tap_at(const Pass* s, int x, int y, int offset) {
   return pixel_at(s->from, tap_x(s, x, offset), y + s->y_step * offset);
 }
 
-// Both taps of a pair.
+// The indices of both taps of a pair.
 typedef struct {
   size_t before, after;
 } TapPair;
@@ -82,7 +100,7 @@ FORCED_INLINE vrgb load_term(const Pass* s, int t, size_t at) {
   return load_rgb(s->from->light + t * s->next_light, s->from->plane, at);
 }
 
-// The result of a term from its sums.
+// Makes the result of a term of its sums.
 FORCED_INLINE vrgb finish_term(global const struct TermParams* term, vrgb light, vrgb weight, vrgb own) {
   if (term->normalised) {
     const vrgb mean = {light.r / weight.r, light.g / weight.g, light.b / weight.b};
@@ -92,15 +110,15 @@ FORCED_INLINE vrgb finish_term(global const struct TermParams* term, vrgb light,
   return multiply_add(missing, own, light);
 }
 
-// Whether the V pixels an offset away lie in the frame, some of them.
+// Tells whether some of the V pixels an offset away lie in the frame.
 FORCED_INLINE int in_frame(const struct FrameParams* f, const Pass* s, int x, int y, int offset) {
   const int at_x = tap_x(s, x, offset);
   const int at_y = y + s->y_step * offset;
   return at_x > -V && at_x < f->width && at_y >= 0 && at_y < f->height;
 }
 
-// Those of the V pixels an offset away that are of a material and in the frame: beyond it the rows of the vertical pass
-// hold anything.
+// Mask of the V pixels an offset away that are of a material and lie in the frame; outside it, the rows of the vertical
+// pass hold undefined data.
 FORCED_INLINE vint lanes_of(const struct FrameParams* f, const Pass* s, vint material, size_t tap, int x, int offset) {
   const vint same = AS_MASK((load_bytes(s->from->material + tap) & MATERIAL_MASK) == material);
   if (s->axis == 0 || s->shear == 0) return same;
@@ -114,7 +132,7 @@ FORCED_INLINE vrgb add_scaled(global const float* factor, vrgb a, vrgb b) {
   return result;
 }
 
-// A pair of taps in one channel.
+// The light of a pair of taps in one channel.
 typedef struct {
   vfloat before, after;
 } ChannelPair;

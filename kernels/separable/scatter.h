@@ -1,4 +1,4 @@
-// One separable pass over V pixels of a row. See Taps in taps.hpp for what it computes.
+// One separable pass over V pixels of a row. Taps in taps.hpp says what it computes.
 #include "classify/tap_level.h"
 #include "separable/curved.h"
 #include "separable/flat.h"
@@ -22,8 +22,8 @@ FORCED_INLINE vrgb total_of(global const struct TermParams* terms, const vrgb* v
   return total;
 }
 
-// The lanes of all materials, whatever taps fall on: of each term in the horizontal pass, their sum as the first one in
-// the vertical pass. It is rarely needed, so that there is one for both passes.
+// Scatters the lanes of all materials, whatever taps fall on. The horizontal pass has a result for each term, the
+// vertical pass their sum as the first one. It is rarely needed, so that both passes share one function.
 SHARED void scatter_pixels(vrgb* result, const struct FrameParams* f, const Pass* s, const Tables* tables, int x,
                            int y) {
   const size_t at = pixel_at(s->from, x, y);

@@ -3,7 +3,7 @@
 #include "separable/bend.h"
 #include "separable/pass.h"
 
-// The sums of a smooth block that its weights are made of.
+// The sums over the taps of a smooth block, one for each part of their weights.
 typedef struct {
   vrgb rgb, stretch, skew;
 } SmoothSums;
@@ -29,7 +29,7 @@ FORCED_INLINE SmoothSums smooth_centre(global const struct SmoothWeight* weight,
   return sums;
 }
 
-// As add_last_pairs.
+// Adds the pairs from `i` on, in which only some channels have weights.
 SHARED void add_last_smooth_pairs(SmoothSums* sums, const Pass* s, global const struct TapLevelParams* level,
                                   global const int* offsets, global const struct SmoothWeight* weights, int i, int x,
                                   int y) {
@@ -54,7 +54,7 @@ SHARED void add_last_smooth_pairs(SmoothSums* sums, const Pass* s, global const 
   }
 }
 
-// A smooth block where every tap falls on the material.
+// Scatters a smooth block where every tap falls on the material.
 FORCED_INLINE void scatter_smooth_clean(vrgb* result, const struct FrameParams* f, const Pass* s,
                                         global const struct TapLevelParams* level, global const int* offsets,
                                         global const struct SmoothWeight* weights, int x, int y) {
@@ -91,7 +91,8 @@ FORCED_INLINE void scatter_smooth_clean(vrgb* result, const struct FrameParams* 
   for (int t = 0; t < TERMS; ++t) result[t] = smooth_total(sums + t, bend);
 }
 
-// A smooth block where some taps fall on something else. With none it gives the same bits as scatter_smooth_clean.
+// Scatters a smooth block where some taps fall on something else. Where none does, it gives the bits of
+// scatter_smooth_clean.
 FORCED_INLINE void scatter_smooth(vrgb* result, const struct FrameParams* f, const Pass* s, const Tables* tables,
                                   global const struct TapLevelParams* level, global const struct TermParams* terms,
                                   vint material, int x, int y) {

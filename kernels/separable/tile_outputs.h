@@ -1,8 +1,7 @@
-// From the windows of a tile into the caller's images.
-#include "frame/compose.h"
+// Writes the light of a tile to the caller's images.
 #include "separable/tile_light.h"
 
-// Three planes, each with its own place.
+// Three planes, each in a place of its own.
 typedef struct {
   global float *r, *g, *b;  // of the first pixel
   size_t row_stride;
@@ -25,7 +24,7 @@ typedef float2 unaligned_floats2 __attribute__((aligned(4)));
 typedef float4 unaligned_floats4 __attribute__((aligned(4)));
 typedef float8 unaligned_floats8 __attribute__((aligned(4)));
 
-// Fewer than 16 floats.
+// Copies fewer than 16 floats.
 static inline void copy_floats(global float* to, global const float* from, int count) {
 #define COPY_PART(size)                                                                \
   if (count & size) {                                                                  \
@@ -41,7 +40,7 @@ static inline void copy_floats(global float* to, global const float* from, int c
 }
 #endif
 
-// Part of a row of an output, past the caches: nobody reads it soon, so that its lines need not be fetched.
+// Writes a part of a row past the caches: nobody reads it soon, so that its lines need not be fetched.
 SHARED void stream_floats(global float* to, global const float* from, int count) {
 #if V > 1 && __has_builtin(__builtin_nontemporal_store)
   const int before = min((int)(-((size_t)to / sizeof(float)) & (V - 1)), count);
@@ -54,77 +53,88 @@ SHARED void stream_floats(global float* to, global const float* from, int count)
 #endif
 }
 
-SHARED void stream_planes(const Planes* to, const Planes* from, int x_begin, int x_end, int y_begin, int y_end) {
-  for (int y = y_begin; y < y_end; ++y) {
-    const size_t at = y * to->row_stride + x_begin;
-    const size_t from_at = y * from->row_stride + x_begin;
-    stream_floats(to->r + at, from->r + from_at, x_end - x_begin);
-    stream_floats(to->g + at, from->g + from_at, x_end - x_begin);
-    stream_floats(to->b + at, from->b + from_at, x_end - x_begin);
+SHARED void stream_planes(const Planes* to, const Planes* from, Box box) {
+  const int count = box.x_end - box.x_begin;
+  for (int y = box.y_begin; y < box.y_end; ++y) {
+    const size_t at = y * to->row_stride + box.x_begin;
+    const size_t from_at = y * from->row_stride + box.x_begin;
+    stream_floats(to->r + at, from->r + from_at, count);
+    stream_floats(to->g + at, from->g + from_at, count);
+    stream_floats(to->b + at, from->b + from_at, count);
   }
 }
 
-// Pixels that do not scatter. `has_narrow`: some have a material.
-SHARED void copy_pixels(const struct FrameParams* f, const Inputs* in, const Outputs* out, int has_narrow, int x_begin,
-                        int x_end, int y_begin, int y_end) {
+// Writes pixels that do not scatter. `has_narrow` says that some have a material.
+SHARED void copy_pixels(const TileRun* run, int has_narrow, Box box) {
+  const struct FrameParams* f = run->f;
+  const FrameOutputs* out = run->out;
 #if !LIT
-  if (!has_narrow && f->albedo_mix == 0.0f && !out->writes_result && is_planar(&in->light_at) &&
-      is_planar(&out->scattered_at)) {
-    for (int y = y_begin; y < y_end; ++y) {
+  const struct ImageParams* light = &run->in->layouts->light;
+  const struct ImageParams* scattered = &out->layouts->scattered;
+  if (!has_narrow && f->albedo_mix == 0.0f && !out->flags->writes_result && is_planar(light) && is_planar(scattered)) {
+    for (int y = box.y_begin; y < box.y_end; ++y) {
 #pragma nounroll
       for (int c = 0; c < 3; ++c) {
-        stream_floats((global float*)(out->scattered + byte_at(&out->scattered_at, x_begin, y, c)),
-                      (global const float*)(in->light + byte_at(&in->light_at, x_begin, y, c)), x_end - x_begin);
+        stream_floats((global float*)(out->scattered + byte_at(scattered, box.x_begin, y, c)),
+                      (global const float*)(run->in->light + byte_at(light, box.x_begin, y, c)),
+                      box.x_end - box.x_begin);
       }
     }
     return;
   }
 #endif
-  for (int y = y_begin; y < y_end; ++y) {
-    const InputRows rows = input_rows(f, in, y);
-    for (int x = x_begin; x < x_end; x += V) compose(f, in, &rows, out, broadcast_rgb((vfloat)(0.0f)), 0, x, y);
+  for (int y = box.y_begin; y < box.y_end; ++y) {
+    const InputRows rows = input_rows(f, run->in, y);
+    for (int x = box.x_begin; x < box.x_end; x += V) {
+      compose(f, run->in, &rows, out, broadcast_rgb((vfloat)(0.0f)), 0, x, y);
+    }
   }
 }
 
-// Where light after both passes goes if the outputs are to be composed of it: a strip of a tile.
+// A strip of a tile, which holds light after both passes until the outputs are composed of it.
 static inline Planes strip_of(const Windows* w, int y_begin) {
-  const size_t row_stride = (w->own_x_end - w->own_x_begin + BLOCK - 1) & ~(BLOCK - 1);
+  const size_t row_stride = (w->own.x_end - w->own.x_begin + BLOCK - 1) & ~(BLOCK - 1);
   Planes strip;
-  strip.r = w->strip - y_begin * row_stride - w->own_x_begin;
+  strip.r = w->strip - y_begin * row_stride - w->own.x_begin;
   strip.g = strip.r + STRIP_ROWS * row_stride;
   strip.b = strip.g + STRIP_ROWS * row_stride;
   strip.row_stride = row_stride;
   return strip;
 }
 
-// Where it goes if it is the output.
-static inline Planes output_of(const struct FrameParams* f, const Outputs* out, global float* deferred) {
+// The place of light after both passes if it is the output as it is; else r is 0.
+static inline Planes output_of(const TileRun* run) {
+  const struct FrameParams* f = run->f;
   Planes planes = {0, 0, 0, 0};
-  if (deferred) {
-    planes.r = deferred + PADDING;
-    planes.g = planes.r + (size_t)f->stride * f->height;
-    planes.b = planes.g + (size_t)f->stride * f->height;
+  if (run->deferred) {
+    planes.r = run->deferred + PADDING;
+    planes.g = planes.r + plane_size(f);
+    planes.b = planes.g + plane_size(f);
     planes.row_stride = f->stride;
-#if !LIT
-  } else if (f->albedo_mix == 0.0f && out->writes_scattered && !out->writes_result && is_planar(&out->scattered_at) &&
-             out->scattered_at.row_stride % 4 == 0) {
-    global uchar* first = out->scattered + out->scattered_at.offset;
-    planes.r = (global float*)first;
-    planes.g = (global float*)(first + out->scattered_at.channel_stride);
-    planes.b = (global float*)(first + 2 * (Bytes)out->scattered_at.channel_stride);
-    planes.row_stride = out->scattered_at.row_stride / 4;
-#endif
+    return planes;
   }
+#if !LIT
+  const struct RunFlags* flags = run->out->flags;
+  const struct ImageParams* scattered = &run->out->layouts->scattered;
+  if (f->albedo_mix == 0.0f && flags->writes_scattered && !flags->writes_result && is_planar(scattered) &&
+      scattered->row_stride % 4 == 0) {
+    global uchar* first = run->out->scattered + scattered->offset;
+    planes.r = (global float*)first;
+    planes.g = (global float*)(first + scattered->channel_stride);
+    planes.b = (global float*)(first + 2 * (Bytes)scattered->channel_stride);
+    planes.row_stride = scattered->row_stride / 4;
+  }
+#endif
   return planes;
 }
 
-// The outputs of some pixels of a tile: `uniform`, or what is in the strip.
-static inline void compose_strip(const Windows* w, const struct FrameParams* f, const Inputs* in, const Outputs* out,
-                                 const vrgb* uniform, int all_finite, global float* deferred, const Planes* strip,
-                                 int x_begin, int x_end, int y_begin, int y_end) {
-  for (int y = y_begin; y < y_end; ++y) {
-    const InputRows rows = input_rows(f, in, y);
-    for (int x = x_begin; x < x_end; x += V) {
+// Writes the outputs of some pixels of a tile of the light in the strip, or of `uniform` light if it is not 0.
+static inline void compose_strip(const TileRun* run, const vrgb* uniform, int all_finite, const Planes* strip,
+                                 Box box) {
+  const struct FrameParams* f = run->f;
+  for (int y = box.y_begin; y < box.y_end; ++y) {
+    const InputRows rows = input_rows(f, run->in, y);
+    for (int x = box.x_begin; x < box.x_end; x += V) {
       const size_t at = y * strip->row_stride + x;
       vrgb after;
       if (uniform) {
@@ -134,10 +144,10 @@ static inline void compose_strip(const Windows* w, const struct FrameParams* f, 
         after.g = load_floats(strip->g + at);
         after.b = load_floats(strip->b + at);
       }
-      if (deferred) {
-        store_rgb(deferred, (size_t)f->stride * f->height, surface_at(f, x, y), after);
+      if (run->deferred) {
+        store_deferred(f, run->deferred, x, y, after);
       } else {
-        compose(f, in, &rows, out, after, all_finite, x, y);
+        compose(f, run->in, &rows, run->out, after, all_finite, x, y);
       }
     }
   }

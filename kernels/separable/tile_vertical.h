@@ -1,4 +1,4 @@
-// The vertical pass of a tile over some rows, by the shapes of its blocks, and their outputs.
+// The vertical pass of a tile over some rows, by the classes of its blocks, and the outputs of these rows.
 #include "separable/choice.h"
 #include "separable/tile_outputs.h"
 
@@ -9,7 +9,7 @@ static inline Pass pass_vertical(const Window* from, TapPlaces places, int shear
   return pass;
 }
 
-// Of the taps of some rows of a tile. Sides are those of place_sides.
+// Places the taps of some rows of a tile. Their sides are those that place_sides writes.
 static inline TapPlaces places_of(const Windows* w, int y_begin, int y_end) {
   const int first = max(y_begin - w->reach_y, w->vertical.y_begin);
   const int last = min(y_end + w->reach_y, w->vertical.y_end);
@@ -18,7 +18,7 @@ static inline TapPlaces places_of(const Windows* w, int y_begin, int y_end) {
   return places;
 }
 
-// How far taps lie to the side in a flat or smooth block.
+// Writes how far taps lie to the side in a flat or smooth block.
 static inline void place_sides(const Windows* w, const Tables* tables, struct ChoiceParams choice) {
 #if SHEARED
   global const struct TapLevelParams* level = tables->levels + choice.level;
@@ -30,9 +30,10 @@ static inline void place_sides(const Windows* w, const Tables* tables, struct Ch
 #endif
 }
 
-// A flat block, down.
-SHARED void vertical_flat(const Windows* w, const Tables* tables, TapPlaces places, struct ChoiceParams choice,
-                          const Planes* to, int x_begin, int x_end, int y_begin, int y_end) {
+// Scatters a flat block.
+SHARED void vertical_flat(const Windows* w, const TileRun* run, TapPlaces places, struct ChoiceParams choice,
+                          const Planes* to, Box box) {
+  const Tables* tables = run->tables;
   const Window from = w->vertical;
   const Pass pass = pass_vertical(&from, places, choice.shear);
   const Planes target = *to;
@@ -40,9 +41,9 @@ SHARED void vertical_flat(const Windows* w, const Tables* tables, TapPlaces plac
   global const int* offsets = tables->offsets + level->first_offset;
   global const struct FlatWeight* weights = tables->flat_weights + choice.weight;
   global const struct TermParams* terms = tables->terms + tables->materials[choice.material].first_term;
-  for (int y = y_begin; y < y_end; y += AT_ONCE) {
-    const int next = min(y + 1, y_end - 1);
-    for (int x = x_begin; x < x_end; x += V) {
+  for (int y = box.y_begin; y < box.y_end; y += AT_ONCE) {
+    const int next = min(y + 1, box.y_end - 1);
+    for (int x = box.x_begin; x < box.x_end; x += V) {
       const Pixel pixels[AT_ONCE] = {{x, y}, {x, next}};
       vrgb result[AT_ONCE][TERMS];
       scatter_clean(result, &pass, level, offsets, weights, pixels);
@@ -52,10 +53,10 @@ SHARED void vertical_flat(const Windows* w, const Tables* tables, TapPlaces plac
   }
 }
 
-// A smooth block, down.
-SHARED void vertical_smooth(const Windows* w, const struct FrameParams* f, const Tables* tables, TapPlaces places,
-                            struct ChoiceParams choice, const Planes* to, int x_begin, int x_end, int y_begin,
-                            int y_end) {
+// Scatters a smooth block.
+SHARED void vertical_smooth(const Windows* w, const TileRun* run, TapPlaces places, struct ChoiceParams choice,
+                            const Planes* to, Box box) {
+  const Tables* tables = run->tables;
   const Window from = w->vertical;
   const Pass pass = pass_vertical(&from, places, choice.shear);
   const Planes target = *to;
@@ -63,117 +64,117 @@ SHARED void vertical_smooth(const Windows* w, const struct FrameParams* f, const
   global const int* offsets = tables->offsets + level->first_offset;
   global const struct SmoothWeight* weights = tables->smooth_weights + choice.weight;
   global const struct TermParams* terms = tables->terms + tables->materials[choice.material].first_term;
-  for (int y = y_begin; y < y_end; ++y) {
-    for (int x = x_begin; x < x_end; x += V) {
+  for (int y = box.y_begin; y < box.y_end; ++y) {
+    for (int x = box.x_begin; x < box.x_end; x += V) {
       vrgb result[TERMS];
-      scatter_smooth_clean(result, f, &pass, level, offsets, weights, x, y);
+      scatter_smooth_clean(result, run->f, &pass, level, offsets, weights, x, y);
       store_planes(&target, y * target.row_stride + x, total_of(terms, result));
     }
   }
 }
 
-// A curved block, down.
-SHARED void vertical_curved(const Windows* w, const struct FrameParams* f, const Tables* tables,
-                            struct ChoiceParams choice, const Planes* to, int x_begin, int x_end, int y_begin,
-                            int y_end) {
+// Scatters a curved block.
+SHARED void vertical_curved(const Windows* w, const TileRun* run, struct ChoiceParams choice, const Planes* to,
+                            Box box) {
+  const Tables* tables = run->tables;
   const Window from = w->vertical;
   const Pass pass = pass_from(&from, 1, 0);
   global const struct TermParams* terms = tables->terms + tables->materials[choice.material].first_term;
-  for (int y = y_begin; y < y_end; ++y) {
-    for (int x = x_begin; x < x_end; x += V) {
+  for (int y = box.y_begin; y < box.y_end; ++y) {
+    for (int x = box.x_begin; x < box.x_end; x += V) {
       vrgb result[TERMS];
-      scatter_curved(result, f, &pass, tables, tables->levels + choice.level, terms, (vint)(choice.material + 1), x, y,
-                     1);
+      scatter_curved(result, run->f, &pass, tables, tables->levels + choice.level, terms, (vint)(choice.material + 1),
+                     x, y, 1);
       store_planes(to, y * to->row_stride + x, total_of(terms, result));
     }
   }
 }
 
-// Any block, down.
-SHARED void vertical_any(const Windows* w, const struct FrameParams* f, const Tables* tables, const Planes* to,
-                         int x_begin, int x_end, int y_begin, int y_end) {
+// Scatters any block.
+SHARED void vertical_any(const Windows* w, const TileRun* run, const Planes* to, Box box) {
   const Pass pass = pass_from(&w->vertical, 1, 0);
-  for (int y = y_begin; y < y_end; ++y) {
-    for (int x = x_begin; x < x_end; x += V) {
+  for (int y = box.y_begin; y < box.y_end; ++y) {
+    for (int x = box.x_begin; x < box.x_end; x += V) {
       vrgb result[TERMS];
-      scatter_pixels(result, f, &pass, tables, x, y);
+      scatter_pixels(result, run->f, &pass, run->tables, x, y);
       store_planes(to, y * to->row_stride + x, result[0]);
     }
   }
 }
 
-// How what is in the strip becomes the output.
-#define STRIP_STREAMED 0  // as it is
-#define STRIP_COMPOSED 1
-#define STRIP_EMPTY 2  // there is nothing in it
+// Ways from the strip to the output.
+#define STRIP_STREAMED 0  // the light is the output
+#define STRIP_COMPOSED 1  // some pixels need more than their light
+#define STRIP_EMPTY 2     // no pixel has scattered
 
-// The vertical pass over some rows of one column of blocks, into the strip.
-static inline int scatter_column(const Windows* w, const struct FrameParams* f, const Tables* tables, TapPlaces places,
-                                 const Planes* strip, int has_bad, int x, int y_begin, int y_end) {
-  const int x_end = min(x + BLOCK, w->own_x_end);
+// The vertical pass over some rows of one column of blocks, into the strip. Returns the way to the output.
+static inline int scatter_column(const Windows* w, const TileRun* run, TapPlaces places, const Planes* strip,
+                                 int has_bad, Box column) {
   int is_empty = 1;
   int is_general = 0;
-  for (int y = y_begin, end = y_begin; y < y_end; y = end) {
-    end = min((y / BLOCK + 1) * BLOCK, y_end);
-    const struct ChoiceParams choice = choice_of(f, tables, x / BLOCK, y / BLOCK, 1);
+  Box block = column;
+  for (; block.y_begin < column.y_end; block.y_begin = block.y_end) {
+    block.y_end = min((block.y_begin / BLOCK + 1) * BLOCK, column.y_end);
+    const struct ChoiceParams choice = choice_of(run->f, run->tables, column.x_begin / BLOCK, block.y_begin / BLOCK, 1);
     if (choice.variant == VARIANT_EMPTY) {
       is_general = 1;
       continue;
     }
     const int variant = has_bad ? VARIANT_GENERAL : choice.variant;
     is_empty = 0;
-    if (variant == VARIANT_FLAT || variant == VARIANT_SMOOTH) place_sides(w, tables, choice);
+    if (variant == VARIANT_FLAT || variant == VARIANT_SMOOTH) place_sides(w, run->tables, choice);
     if (variant == VARIANT_FLAT) {
-      vertical_flat(w, tables, places, choice, strip, x, x_end, y, end);
+      vertical_flat(w, run, places, choice, strip, block);
     } else if (variant == VARIANT_SMOOTH) {
-      vertical_smooth(w, f, tables, places, choice, strip, x, x_end, y, end);
+      vertical_smooth(w, run, places, choice, strip, block);
     } else if (variant == VARIANT_CURVED) {
-      vertical_curved(w, f, tables, choice, strip, x, x_end, y, end);
+      vertical_curved(w, run, choice, strip, block);
     } else {
-      vertical_any(w, f, tables, strip, x, x_end, y, end);
+      vertical_any(w, run, strip, block);
       is_general = 1;
     }
   }
   return is_empty ? STRIP_EMPTY : is_general ? STRIP_COMPOSED : STRIP_STREAMED;
 }
 
-// What is in the strip into the outputs.
-static inline void put_strip(const Windows* w, const struct FrameParams* f, const Inputs* in, const Outputs* out,
-                             int how, int all_finite, int copies, global float* deferred, const Planes* strip,
-                             const Planes* output, int x_begin, int x_end, int y_begin, int y_end) {
-  if (how == STRIP_EMPTY) {
-    if (copies) copy_pixels(f, in, out, 0, x_begin, x_end, y_begin, y_end);
-  } else if (how == STRIP_COMPOSED || !output->r) {
-    compose_strip(w, f, in, out, 0, all_finite, deferred, strip, x_begin, x_end, y_begin, y_end);
+// Writes the outputs of a part of the strip.
+static inline void put_strip(const TileRun* run, int way, int all_finite, const Planes* strip, const Planes* output,
+                             Box box) {
+  if (way == STRIP_EMPTY) {
+    if (run->copies) copy_pixels(run, 0, box);
+  } else if (way == STRIP_COMPOSED || !output->r) {
+    compose_strip(run, 0, all_finite, strip, box);
   } else {
-    stream_planes(output, strip, x_begin, x_end, y_begin, y_end);
+    stream_planes(output, strip, box);
   }
 }
 
 // The vertical pass over some rows of the tile, and their outputs.
-static inline void scatter_vertical(const Windows* w, const struct FrameParams* f, const Inputs* in, const Outputs* out,
-                                    const Tables* tables, const LightSummary* light_summary, int copies, int skips,
-                                    global float* deferred, int y_begin, int y_end) {
+static inline void scatter_vertical(const Windows* w, const TileRun* run, const LightSummary* light_summary, int skips,
+                                    int y_begin, int y_end) {
   const int has_bad = light_summary->last_bad >= y_begin - w->reach_y;
   const Planes strip = strip_of(w, y_begin);
+  const Box all = {w->own.x_begin, w->own.x_end, y_begin, y_end};
   if (skips && light_summary->last_varied < y_begin - w->reach_y) {
     const vrgb light = {(vfloat)(light_summary->light[0]), (vfloat)(light_summary->light[1]),
                         (vfloat)(light_summary->light[2])};
-    compose_strip(w, f, in, out, &light, !has_bad, deferred, &strip, w->own_x_begin, w->own_x_end, y_begin, y_end);
+    compose_strip(run, &light, !has_bad, &strip, all);
     return;
   }
-  const Planes output = output_of(f, out, deferred);
+  const Planes output = output_of(run);
   const TapPlaces places = places_of(w, y_begin, y_end);
-  // Column of blocks after column: the rows that taps of a column fall on stay in the first-level cache.
-  int run_begin = w->own_x_begin;
-  int run_how = STRIP_STREAMED;
-  for (int x = w->own_x_begin; x < w->own_x_end; x += BLOCK) {
-    const int how = scatter_column(w, f, tables, places, &strip, has_bad, x, y_begin, y_end);
-    if (how == run_how) continue;
-    put_strip(w, f, in, out, run_how, !has_bad, copies, deferred, &strip, &output, run_begin, x, y_begin, y_end);
-    run_begin = x;
-    run_how = how;
+  // Blocks come column after column: the rows that the taps of a column fall on stay in the first-level cache.
+  Box done = all;
+  int way_of_done = STRIP_STREAMED;
+  for (int x = all.x_begin; x < all.x_end; x += BLOCK) {
+    const Box column = {x, min(x + BLOCK, all.x_end), y_begin, y_end};
+    const int way = scatter_column(w, run, places, &strip, has_bad, column);
+    if (way == way_of_done) continue;
+    done.x_end = x;
+    put_strip(run, way_of_done, !has_bad, &strip, &output, done);
+    done.x_begin = x;
+    way_of_done = way;
   }
-  put_strip(w, f, in, out, run_how, !has_bad, copies, deferred, &strip, &output, run_begin, w->own_x_end, y_begin,
-            y_end);
+  done.x_end = all.x_end;
+  put_strip(run, way_of_done, !has_bad, &strip, &output, done);
 }

@@ -1,13 +1,35 @@
-// What a tile needs around it: how far its taps go, and where the rows that they fall on are kept.
+// The windows of a tile: as large as its taps go, with room for the rows that they fall on.
+#include "frame/compose.h"
 #include "separable/scatter.h"
 
-// How far the taps of a pass go in the blocks of a rectangle, px.
-SHARED int farthest_tap(const struct FrameParams* f, const Tables* tables, int x_begin, int x_end, int y_begin,
-                        int y_end, int axis) {
+// The run that all tiles belong to.
+typedef struct {
+  const struct FrameParams* f;
+  const struct TileParams* tiles;
+  const struct TileMemory* layout;
+  const FrameInputs* in;
+  const FrameOutputs* out;
+  const Tables* tables;
+  global const struct BlockParams* blocks;
+  global const uchar* changed;  // whether each block has changed since the frame before; if tiles are reused
+  global float* deferred;       // 0 if outputs are written at once
+  int copies;                   // pixels that do not scatter are written, too
+  int skips;                    // rows under uniform light are not filtered
+} TileRun;
+
+// A rectangle of pixels.
+typedef struct {
+  int x_begin, x_end;
+  int y_begin, y_end;
+} Box;
+
+// The offset of the farthest tap of a pass in the blocks of a box, px.
+SHARED int farthest_tap(const TileRun* run, Box box, int axis) {
+  const Tables* tables = run->tables;
   int farthest = 0;
-  for (int cy = y_begin / BLOCK; cy * BLOCK < y_end; ++cy) {
-    for (int cx = x_begin / BLOCK; cx * BLOCK < x_end; ++cx) {
-      const struct BlockPass pass = block_pass(f, tables, cx, cy, axis);
+  for (int block_y = box.y_begin / BLOCK; block_y * BLOCK < box.y_end; ++block_y) {
+    for (int block_x = box.x_begin / BLOCK; block_x * BLOCK < box.x_end; ++block_x) {
+      const struct BlockPass pass = block_pass(run->f, run->tables, block_x, block_y, axis);
       for (int m = 0; m < MATERIALS; ++m) {
         farthest =
             max(farthest, last_offset_of(tables->materials + m, tables->levels, pass.px_per_mm, pass.block_class));
@@ -17,14 +39,14 @@ SHARED int farthest_tap(const struct FrameParams* f, const Tables* tables, int x
   return farthest;
 }
 
-// How far the taps of the vertical pass go to the side in the blocks of a rectangle, px.
-SHARED int farthest_side(const struct FrameParams* f, const Tables* tables, int x_begin, int x_end, int y_begin,
-                         int y_end, int reach) {
+// The columns between a pixel and the tap of the vertical pass that is farthest to its side, in the blocks of a box, if
+// no tap is more than `reach` rows away.
+SHARED int farthest_side(const TileRun* run, Box box, int reach) {
   int farthest = 0;
 #if SHEARED
-  for (int cy = y_begin / BLOCK; cy * BLOCK < y_end; ++cy) {
-    for (int cx = x_begin / BLOCK; cx * BLOCK < x_end; ++cx) {
-      const struct BlockPass pass = block_pass(f, tables, cx, cy, 1);
+  for (int block_y = box.y_begin / BLOCK; block_y * BLOCK < box.y_end; ++block_y) {
+    for (int block_x = box.x_begin / BLOCK; block_x * BLOCK < box.x_end; ++block_x) {
+      const struct BlockPass pass = block_pass(run->f, run->tables, block_x, block_y, 1);
       const int side = pass.block_class == CLASS_CURVED ? min(reach, MOST_SIDE) : side_of(abs(pass.shear), reach);
       farthest = max(farthest, side);
     }
@@ -33,13 +55,12 @@ SHARED int farthest_side(const struct FrameParams* f, const Tables* tables, int 
   return farthest;
 }
 
-// The most curved shape of a block of a rectangle in a pass.
-SHARED int worst_class(const struct FrameParams* f, const Tables* tables, int x_begin, int x_end, int y_begin,
-                       int y_end, int axis) {
+// The most curved class of the blocks of a box that scatter in a pass.
+SHARED int worst_class(const TileRun* run, Box box, int axis) {
   int worst = CLASS_FLAT;
-  for (int cy = y_begin / BLOCK; cy * BLOCK < y_end; ++cy) {
-    for (int cx = x_begin / BLOCK; cx * BLOCK < x_end; ++cx) {
-      const struct BlockPass pass = block_pass(f, tables, cx, cy, axis);
+  for (int block_y = box.y_begin / BLOCK; block_y * BLOCK < box.y_end; ++block_y) {
+    for (int block_x = box.x_begin / BLOCK; block_x * BLOCK < box.x_end; ++block_x) {
+      const struct BlockPass pass = block_pass(run->f, run->tables, block_x, block_y, axis);
       if (pass.px_per_mm > 0.0f) worst = max(worst, pass.block_class);
     }
   }
@@ -51,26 +72,25 @@ typedef struct {
   int begin, end;
 } Columns;
 
-// The columns in which some block of a rectangle is at least that curved in a pass; CLASS_EMPTY + 1: not empty.
-SHARED Columns columns_of(const struct FrameParams* f, const Tables* tables, int x_begin, int x_end, int y_begin,
-                          int y_end, int axis, int block_class) {
+// The columns in which some block of a box is at least that curved in a pass; CLASS_EMPTY + 1: not empty.
+SHARED Columns columns_of(const TileRun* run, Box box, int axis, int block_class) {
 #if JITTER
-  const Columns all = {x_begin, x_end};
+  const Columns all = {box.x_begin, box.x_end};
   return all;
 #endif
-  Columns columns = {x_end, x_begin};
-  for (int cy = y_begin / BLOCK; cy * BLOCK < y_end; ++cy) {
-    for (int cx = x_begin / BLOCK; cx * BLOCK < x_end; ++cx) {
-      const struct BlockPass pass = block_pass(f, tables, cx, cy, axis);
+  Columns columns = {box.x_end, box.x_begin};
+  for (int block_y = box.y_begin / BLOCK; block_y * BLOCK < box.y_end; ++block_y) {
+    for (int block_x = box.x_begin / BLOCK; block_x * BLOCK < box.x_end; ++block_x) {
+      const struct BlockPass pass = block_pass(run->f, run->tables, block_x, block_y, axis);
       if (pass.block_class < block_class || (block_class > CLASS_FLAT && pass.px_per_mm == 0.0f)) continue;
-      columns.begin = min(columns.begin, cx * BLOCK);
-      columns.end = max(columns.end, cx * BLOCK + BLOCK);
+      columns.begin = min(columns.begin, block_x * BLOCK);
+      columns.end = max(columns.end, block_x * BLOCK + BLOCK);
     }
   }
   return columns;
 }
 
-// With those that lie so many pixels around them, within a window with its padding.
+// Adds the columns that lie so many pixels around, within a window with its padding.
 static inline Columns widened(Columns columns, int by_px, const Window* w) {
   if (columns.end <= columns.begin) return columns;
   columns.begin = max((columns.begin - by_px) & ~(BLOCK - 1), w->x_begin - PADDING);
@@ -85,18 +105,16 @@ static inline Columns joined(Columns a, Columns b) {
   return both;
 }
 
-// What the horizontal pass of a tile reads, and what it writes and the vertical pass reads.
+// The memory of a tile: the horizontal pass reads one window and writes the other, which the vertical pass reads.
 typedef struct {
   Window horizontal;
   Window vertical;
   global float* strip;                  // light after both passes, 3 planes of STRIP_ROWS rows
   global struct ChoiceParams* choices;  // of a row of blocks in the horizontal pass
-  global int* row_at;                   // of TapPlaces, of the rows that those of a strip read
+  global int* row_at;                   // of TapPlaces, for the rows that the rows of a strip read
   global int* side_at;
-  int x_begin, x_end;  // that the horizontal pass computes
-  int y_begin, y_end;
-  int own_x_begin, own_x_end;  // of the tile
-  int own_y_begin, own_y_end;
+  Box own;               // the tile
+  Box computed;          // by the horizontal pass
   int class_horizontal;  // the most curved one of all blocks
   int class_vertical;
   Columns bent_vertical;  // blocks that are not flat in the vertical pass, in any row
@@ -106,75 +124,80 @@ typedef struct {
   int side_px;  // of the vertical pass, to the side
 } Windows;
 
-// Of a ring of at least so many rows: of a power of two, unless the frame has fewer and each row its own place.
+// The row mask of a ring buffer of at least so many rows, rounded up to a power of two. If the frame has fewer rows,
+// each has its own place.
 static inline int rows_mask(int rows, int frame_rows) {
   int power = 1;
   while (power < rows) power *= 2;
   return power <= frame_rows ? power - 1 : INT_MAX;
 }
 
-// The windows of a tile.
-static inline Windows windows_of(const struct FrameParams* f, const Tables* tables, int x_begin, int x_end, int y_begin,
-                                 int y_end, global uchar* memory, size_t horizontal_plane, size_t vertical_plane) {
-  const int reach_y = farthest_tap(f, tables, x_begin, x_end, y_begin, y_end, 1);
+#if JITTER
+// A rotated tap leaves its axis by less than this.
+static inline int turned_px(const struct FrameParams* f, int reach) {
+  return (int)fmin(ceil(reach * f->widest_turn) + 1.0f, (float)max(f->width, f->height));
+}
+#endif
+
+static inline Windows windows_of(const TileRun* run, Box own, global uchar* memory) {
+  const struct FrameParams* f = run->f;
+  const struct TileMemory* layout = run->layout;
+  const int reach_y = farthest_tap(run, own, 1);
   // A tap that leaves its axis needs the horizontal pass of the pixels that it falls on.
 #if JITTER
-  const int reach = max(reach_y, farthest_tap(f, tables, x_begin, x_end, y_begin, y_end, 0));
-  const int turned_px = (int)fmin(ceil(reach * f->widest_turn) + 1.0f, (float)max(f->width, f->height));
-  const int side_px = turned_px;
+  const int side_px = turned_px(f, max(reach_y, farthest_tap(run, own, 0)));
+  const int rows_px = max(reach_y, side_px);
 #else
-  const int turned_px = 0;
-  const int side_px = farthest_side(f, tables, x_begin, x_end, y_begin, y_end, reach_y);
+  const int side_px = farthest_side(run, own, reach_y);
+  const int rows_px = reach_y;
 #endif
-  Windows w;
-  w.own_x_begin = x_begin;
-  w.own_x_end = x_end;
-  w.own_y_begin = y_begin;
-  w.own_y_end = y_end;
-  w.x_begin = max(x_begin - side_px, 0) & ~(BLOCK - 1);
-  w.x_end = min(x_end + side_px, f->width);
-  w.y_begin = max(y_begin - max(reach_y, turned_px), 0);
-  w.y_end = min(y_end + max(reach_y, turned_px), f->height);
-  w.reach_y = reach_y;
-  const int reach_x = farthest_tap(f, tables, w.x_begin, w.x_end, w.y_begin, w.y_end, 0);
+  const Box computed = {max(own.x_begin - side_px, 0) & ~(BLOCK - 1), min(own.x_end + side_px, f->width),
+                        max(own.y_begin - rows_px, 0), min(own.y_end + rows_px, f->height)};
+  int reach_x = farthest_tap(run, computed, 0);
 #if JITTER
-  const int reach_2d = max(reach_x, farthest_tap(f, tables, w.x_begin, w.x_end, w.y_begin, w.y_end, 1));
-  const int margin_px = (int)fmin(ceil(reach_2d * f->widest_turn) + 1.0f, (float)max(f->width, f->height));
+  const int margin_px = turned_px(f, max(reach_x, farthest_tap(run, computed, 1)));
+  reach_x = max(reach_x, margin_px);
 #else
   const int margin_px = 0;
 #endif
-  w.class_horizontal = JITTER ? CLASS_CURVED : worst_class(f, tables, w.x_begin, w.x_end, w.y_begin, w.y_end, 0);
-  w.class_vertical = JITTER ? CLASS_CURVED : worst_class(f, tables, x_begin, x_end, y_begin, y_end, 1);
-  const int from_x = JITTER ? w.x_begin : x_begin;
-  const int to_x = JITTER ? w.x_end : x_end;
-  w.bent_vertical = columns_of(f, tables, from_x, to_x, w.y_begin, w.y_end, 1, CLASS_SMOOTH);
-  w.curved_vertical = columns_of(f, tables, from_x, to_x, w.y_begin, w.y_end, 1, CLASS_CURVED);
+  Windows w;
+  w.own = own;
+  w.computed = computed;
+  w.reach_x = reach_x;
+  w.reach_y = reach_y;
   w.side_px = side_px;
-  w.reach_x = max(reach_x, margin_px);
+  w.class_horizontal = JITTER ? CLASS_CURVED : worst_class(run, computed, 0);
+  w.class_vertical = JITTER ? CLASS_CURVED : worst_class(run, own, 1);
+  Box columns = computed;
+  if (!JITTER) {
+    columns.x_begin = own.x_begin;
+    columns.x_end = own.x_end;
+  }
+  w.bent_vertical = columns_of(run, columns, 1, CLASS_SMOOTH);
+  w.curved_vertical = columns_of(run, columns, 1, CLASS_CURVED);
   struct WindowParams p;
-  p.x_begin = max(w.x_begin - max(reach_x, margin_px), 0) & ~(BLOCK - 1);
-  p.x_end = (min(w.x_end + max(reach_x, margin_px), f->width) + BLOCK - 1) & ~(BLOCK - 1);
-  p.y_begin = max(w.y_begin - margin_px, 0);
-  p.y_end = min(w.y_end + margin_px, f->height);
+  p.planes = layout->horizontal;
+  p.x_begin = max(computed.x_begin - reach_x, 0) & ~(BLOCK - 1);
+  p.x_end = (min(computed.x_end + reach_x, f->width) + BLOCK - 1) & ~(BLOCK - 1);
+  p.y_begin = max(computed.y_begin - margin_px, 0);
+  p.y_end = min(computed.y_end + margin_px, f->height);
   p.row_mask = rows_mask(p.y_end - p.y_begin, f->height);
   p.row_stride = JITTER ? p.x_end - p.x_begin + 2 * PADDING : 0;
-  w.horizontal = window_in(p, horizontal_plane, 1, memory);
-  p.x_begin = w.x_begin;
-  p.x_end = (w.x_end + BLOCK - 1) & ~(BLOCK - 1);
-  // A row more, which slopes are taken from.
-  p.y_begin = max(w.y_begin - 1, 0);
-  p.y_end = min(w.y_end + 1, f->height);
+  w.horizontal = window_in(&p, memory);
+  p.planes = layout->vertical;
+  p.x_begin = computed.x_begin;
+  p.x_end = (computed.x_end + BLOCK - 1) & ~(BLOCK - 1);
+  // Slopes are taken from one row more.
+  p.y_begin = max(computed.y_begin - 1, 0);
+  p.y_end = min(computed.y_end + 1, f->height);
   p.row_mask =
       rows_mask(JITTER ? p.y_end - p.y_begin : min(p.y_end - p.y_begin, 2 * reach_y + STRIP_ROWS + 3), f->height);
-  // Odd in cache lines, so that the pixels of a column do not share sets of the cache.
+  // It is odd in cache lines, so that the pixels of a column do not share sets of the cache.
   p.row_stride = (p.x_end - p.x_begin + 2 * PADDING) | 16;
-  w.vertical = window_in(p, vertical_plane, TERMS, memory + window_bytes(horizontal_plane, 1));
-  w.strip = (global float*)(memory + window_bytes(horizontal_plane, 1) + window_bytes(vertical_plane, TERMS));
-  w.choices =
-      (global struct ChoiceParams*)(w.strip + 3 * STRIP_ROWS * (size_t)((f->tile_width + BLOCK - 1) & ~(BLOCK - 1)));
-  // Room for the rows of the ring, each of which is longer than 8 elements, and for the two sides of each pair: there
-  // are fewer pairs than rows that taps reach.
-  w.row_at = (global int*)(w.choices + horizontal_plane / BLOCK);
-  w.side_at = w.row_at + vertical_plane / 8;
+  w.vertical = window_in(&p, memory + layout->vertical_window);
+  w.strip = (global float*)(memory + layout->strip);
+  w.choices = (global struct ChoiceParams*)(memory + layout->choices);
+  w.row_at = (global int*)(memory + layout->row_at);
+  w.side_at = (global int*)(memory + layout->side_at);
   return w;
 }

@@ -40,7 +40,7 @@ Images check_images(const TranslucencyFrame& frame, const TranslucencyDescriptio
                          described("albedo", 3, frame.albedo, w),
                          described("position", 3, frame.position, w),
                          described("normal", 3, frame.normal, w),
-                         described("material", 1, frame.material, w),
+                         described("material", 1, frame.material, w, true),
                          described("mask", 1, frame.mask, w),
                          described("thickness", 1, frame.thickness, w),
                          described("beauty", 3, frame.beauty, w),

@@ -1,4 +1,4 @@
-// What the rest of the library needs of a Device.
+// The state of a Device, for the rest of the library.
 #pragma once
 
 #include "dermis/device.hpp"
@@ -14,8 +14,8 @@ struct Device::State {
   std::shared_ptr<DeviceCache> cache = std::make_shared<DeviceCache>();
 };
 
-/// The same device, whose kernels are built as for one of another vector width (1, 4, 8 or 16) and type. So that the
-/// code that a GPU gets can be tested on a CPU.
+/// Returns the device with another vector width (1, 4, 8 or 16) and type, for which its kernels are built: so the code
+/// that a GPU gets can be tested on a CPU.
 Device with_kernel_shape(const Device& device, int vector_width, std::string_view type);
 
 }  // namespace dermis

@@ -1,4 +1,4 @@
-// What plans for one device share: none of it changes once it is made.
+// Programs and taps that the plans of one device share. They do not change once they are made.
 #pragma once
 
 #include <memory>
@@ -13,7 +13,7 @@
 
 namespace dermis {
 
-/// What taps are fitted to.
+/// Taps are fitted to this.
 struct FitKey {
   Profile profile;
   TapsDesign design;
@@ -21,13 +21,13 @@ struct FitKey {
 };
 
 struct DeviceCache {
-  /// By files and build options. A program holds a few MB of code; a caller who changes options, or what its frames
-  /// hold, comes by a handful of them.
+  /// The key is files and build options. A program holds a few MB of code; a caller who changes options, or the images
+  /// of its frames, needs a handful of them.
   Recent<std::string, cl::Program> programs{16, [](const cl::Program&) { return 1; }};
   /// A usual level table takes 0.7 MB, so ninety fit.
   Recent<FitKey, std::shared_ptr<const Taps>> taps{std::size_t{64} << 20,
                                                    [](const auto& its) { return bytes_of(*its); }};
-  /// The designs with the ranks that were found for them.
+  /// Designs without a rank, with the rank that was found for them.
   Recent<FitKey, TapsDesign> designs{1024, [](const TapsDesign&) { return 1; }};
 
   /// A queue of the device, made when first asked for. It stays: PoCL 3.1 lets go of a command's event after it has
@@ -41,7 +41,7 @@ struct DeviceCache {
   cl::CommandQueue queue_;
 };
 
-/// That of a device and its copies.
+/// The cache that a device shares with its copies.
 DeviceCache& cache_of(const Device& device);
 
 }  // namespace dermis

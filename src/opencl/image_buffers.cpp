@@ -63,7 +63,7 @@ void check_image(const CallerImage& image, int width, int height) {
   }
   const bool is_integer =
       image.layout.format == Format::u8 || image.layout.format == Format::u16 || image.layout.format == Format::u32;
-  if (is_integer && argument != "material") {
+  if (is_integer && !image.takes_integers) {
     throw Error(ErrorCode::usage, argument + " format", "an integer format", "f16 or f32");
   }
   const auto bytes = static_cast<std::intptr_t>(bytes_of(image.layout.format));

@@ -1,4 +1,4 @@
-// Images of a caller, whatever they are for, and the device memory they lie in.
+// Images of a caller, for any use, and the device memory they lie in.
 #pragma once
 
 #include <cstddef>
@@ -18,25 +18,27 @@ struct CallerImage {
   bool is_output;
   const void* host;
   cl_mem buffer;
-  Layout layout;  ///< with all strides filled in
+  Layout layout;                ///< with all strides filled in
+  bool takes_integers = false;  ///< integer formats are allowed
 
   bool present() const { return host != nullptr || buffer != nullptr; }
 };
 
-/// The layout with strides in place of zeros.
+/// Replaces strides of 0 by those of a packed image.
 Layout with_strides(Layout layout, int channels, int width);
 
-/// An Image or OutputImage.
+/// Describes an Image or an OutputImage of frames that are `width` pixels wide.
 template <class AnyImage>
-CallerImage described(const char* name, int channels, const AnyImage& image, int width) {
-  return {name,       channels,     std::is_same_v<AnyImage, OutputImage>,
-          image.host, image.buffer, with_strides(image.layout, channels, width)};
+CallerImage described(const char* name, int channels, const AnyImage& image, int width, bool takes_integers = false) {
+  return {name,          channels,     std::is_same_v<AnyImage, OutputImage>,
+          image.host,    image.buffer, with_strides(image.layout, channels, width),
+          takes_integers};
 }
 
 /// Throws Error(usage) if images cannot have that size.
 void check_size(int width, int height, const char* argument);
 
-/// Throws Error(usage) if the format or layout is none that kernels read, or a buffer is too small.
+/// Throws Error(usage) if kernels cannot read the format or the layout, or a buffer is too small.
 void check_image(const CallerImage& image, int width, int height);
 
 /// Buffers for images: those of the caller, or buffers over the caller's host memory. Host images that overlap, such as
@@ -51,10 +53,10 @@ class ImageBuffers {
 
   /// True if two images may share bytes.
   bool overlap(std::size_t a, std::size_t b) const;
-  /// True if both are the same one: same place, same layout.
+  /// True if both lie in the same place in the same layout.
   bool same_place(std::size_t a, std::size_t b) const;
 
-  /// Makes what the device wrote visible in host memory. Blocks.
+  /// Makes the outputs visible in host memory. Blocks.
   void read_back(const cl::CommandQueue& queue) const;
 
  private:

@@ -24,7 +24,7 @@ struct LinearTable {
 LinearTable tabulate_linear(const std::function<double(int, double)>& f, double r_min_mm, double r_max_mm,
                             int log2_nodes_per_octave);
 
-/// Adds a table to those in a buffer, as linear_table.h reads it.
+/// Adds a table to the nodes of others, as linear_table.h reads it.
 params::TableParams append_table(const LinearTable& table, std::vector<std::array<float, 4>>& nodes);
 
 }  // namespace dermis

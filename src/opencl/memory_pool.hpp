@@ -16,7 +16,7 @@ class MemoryPool {
  public:
   using Sizes = decltype(Memory::sizes);
 
-  /// One for these sizes, new if there is none; those for other sizes are given up.
+  /// Takes a memory of these sizes, a new one if there is none; memories of other sizes are given up.
   std::unique_ptr<Memory> take(const cl::Context& context, const Sizes& sizes) {
     {
       const std::scoped_lock lock(mutex_);

@@ -1,4 +1,4 @@
-// The OpenCL C++ bindings, version 1.2, how their errors become ours, and what is said with them in many places.
+// The OpenCL C++ bindings, version 1.2, with errors as ours, arguments of kernels, uploads and times.
 #pragma once
 
 #define CL_HPP_TARGET_OPENCL_VERSION 120
@@ -25,14 +25,23 @@ auto with_device_errors(Work&& work) {
   }
 }
 
-/// All arguments of a kernel, in their order.
+template <class Argument>
+void set_argument(cl::Kernel& kernel, cl_uint& index, const Argument& argument) {
+  kernel.setArg(index++, argument);
+}
+
+inline void set_argument(cl::Kernel& kernel, cl_uint& index, const std::vector<cl::Buffer>& buffers) {
+  for (const cl::Buffer& buffer : buffers) kernel.setArg(index++, buffer);
+}
+
+/// Sets all arguments of a kernel, in their order. A vector of buffers is as many arguments.
 template <class... Arguments>
 void set_arguments(cl::Kernel& kernel, const Arguments&... arguments) {
   cl_uint index = 0;
-  (kernel.setArg(index++, arguments), ...);
+  (set_argument(kernel, index, arguments), ...);
 }
 
-/// A buffer that kernels only read, with these rows in it.
+/// Makes a buffer of rows that kernels only read; there is at least one row.
 template <class Row>
 cl::Buffer upload(const cl::Context& context, std::span<const Row> rows) {
   return {context, CL_MEM_READ_ONLY | CL_MEM_COPY_HOST_PTR, rows.size_bytes(), const_cast<Row*>(rows.data())};
@@ -43,7 +52,7 @@ cl::Buffer upload(const cl::Context& context, const std::vector<Row>& rows) {
   return upload(context, std::span<const Row>(rows));
 }
 
-/// How long the device worked on commands of a queue that measures times.
+/// The time that the device worked on commands of a queue with CL_QUEUE_PROFILING_ENABLE, ms.
 inline double milliseconds(const std::vector<cl::Event>& events) {
   double sum = 0;
   for (const cl::Event& event : events) {

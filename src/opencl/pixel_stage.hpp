@@ -1,5 +1,4 @@
-// What stages with a work-item for each pixel share: their kernels are built for scalars on every device, for gathers
-// dominate.
+// Stages with a work-item for each pixel. Their kernels are built for scalars on every device, for gathers dominate.
 #pragma once
 
 #include <initializer_list>

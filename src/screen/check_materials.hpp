@@ -1,4 +1,4 @@
-// What every filter over materials asks of them.
+// The conditions on materials that every filter shares.
 #pragma once
 
 #include <vector>

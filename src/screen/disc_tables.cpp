@@ -8,7 +8,7 @@ namespace dermis {
 
 namespace {
 
-/// Levels of detail: kernels within 4 x 4 pixels, and wide ones (Golubev 2018).
+/// Kernels within 4 x 4 pixels have few samples, wide ones the usual number (Golubev 2018).
 constexpr int few_samples = 21;
 constexpr int usual_samples = 55;
 
@@ -39,7 +39,7 @@ void append_disc(const Profile& profile, int channel, const DiscOptions& options
         samples.push_back({static_cast<float>(r_mm * std::cos(angle)), static_cast<float>(r_mm * std::sin(angle)),
                            static_cast<float>(area_mm2), static_cast<float>(spacing_mm)});
         if (i == 0) disc.inner_mm[which][start] = static_cast<float>(profile.radius(channel, from) + spacing_mm / 2);
-        // Blocks that a sample reads end a block and a half away at most.
+        // Squares of pixels that a sample reads end one and a half of their sides away at most.
         reach_mm = std::max(reach_mm, r_mm + (options.prefiltered ? 1.5 * spacing_mm : 0));
       }
     }

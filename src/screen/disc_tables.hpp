@@ -1,4 +1,4 @@
-// Where the samples of discs lie, as the kernels read them.
+// The samples of discs, as the kernels read them.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@ namespace dermis {
 
 inline constexpr int most_disc_samples = 1024;
 
-/// How many samples narrow and wide kernels have.
+/// The number of samples of narrow and wide kernels.
 params::DiscCounts disc_counts(const DiscOptions& options, std::uint32_t seed);
 
 /// Appends the samples of a material, for its widest channel. Set i of DISC_STARTS shares the light beyond the distance

@@ -1,10 +1,35 @@
 #include "screen/frame_images.hpp"
 
+#include <algorithm>
+#include <cctype>
 #include <cmath>
+
+#include "opencl/program.hpp"
 
 namespace dermis {
 
+const std::array<FrameImage, image_count> frame_images = {{
+    {"light", 3, &Frame::light, nullptr, nullptr, &params::FrameLayouts::light},
+    {"albedo", 3, &Frame::albedo, nullptr, &FrameDescription::albedo, &params::FrameLayouts::albedo},
+    {"depth", 1, &Frame::depth, nullptr, &FrameDescription::depth, &params::FrameLayouts::depth},
+    {"material", 1, &Frame::material, nullptr, &FrameDescription::material, &params::FrameLayouts::material, true},
+    {"mask", 1, &Frame::mask, nullptr, &FrameDescription::mask, &params::FrameLayouts::mask},
+    {"matte", 1, &Frame::matte, nullptr, &FrameDescription::matte, &params::FrameLayouts::matte},
+    {"normal", 3, &Frame::normal, nullptr, &FrameDescription::normal, &params::FrameLayouts::normal},
+    {"beauty", 3, &Frame::beauty, nullptr, nullptr, &params::FrameLayouts::beauty},
+    {"scattered", 3, nullptr, &Frame::scattered, nullptr, &params::FrameLayouts::scattered},
+    {"result", 3, nullptr, &Frame::result, nullptr, &params::FrameLayouts::result},
+}};
+
 namespace {
+
+constexpr std::size_t index_of(ImageName name) { return static_cast<std::size_t>(name); }
+
+CallerImage image_of(const Frame& frame, const FrameImage& image) {
+  return image.input != nullptr
+             ? described(image.name, image.channels, frame.*image.input, frame.width, image.takes_integers)
+             : described(image.name, image.channels, frame.*image.output, frame.width);
+}
 
 void check_positive(double value, const char* argument) {
   // Kernels hold it, and its reciprocal, as float32.
@@ -29,32 +54,50 @@ void check_camera(const Frame& frame) {
 
 }  // namespace
 
+FrameDescription FrameDescription::of(const Frame& frame) {
+  FrameDescription description;
+  for (const FrameImage& image : frame_images) {
+    if (image.described != nullptr) description.*image.described = static_cast<bool>(frame.*image.input);
+  }
+  return description;
+}
+
+std::string image_constants(const FrameDescription& description) {
+  std::string constants;
+  for (const FrameImage& image : frame_images) {
+    if (image.described == nullptr) continue;
+    std::string name = image.name;
+    std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return std::toupper(c); });
+    constants += build_constant(("HAS_" + name).c_str(), description.*image.described ? 1 : 0);
+  }
+  return constants;
+}
+
+Frame one_pixel_frame(const FrameDescription& description, const void* in, void* out) {
+  Frame frame{.width = 1, .height = 1, .light = {.host = in}, .camera = Camera::orthographic(1, 1)};
+  for (const FrameImage& image : frame_images) {
+    if (image.described != nullptr && description.*image.described) frame.*image.input = {.host = in};
+  }
+  frame.scattered = {.host = out};
+  return frame;
+}
+
 std::array<CallerImage, image_count> check_frame(const Frame& frame, const FrameDescription& description,
                                                  const Options& options) {
   check_size(frame.width, frame.height, "frame size");
-  const std::array<CallerImage, image_count> images = {
-      described("light", 3, frame.light, frame.width),         described("albedo", 3, frame.albedo, frame.width),
-      described("depth", 1, frame.depth, frame.width),         described("material", 1, frame.material, frame.width),
-      described("mask", 1, frame.mask, frame.width),           described("matte", 1, frame.matte, frame.width),
-      described("normal", 3, frame.normal, frame.width),       described("beauty", 3, frame.beauty, frame.width),
-      described("scattered", 3, frame.scattered, frame.width), described("result", 3, frame.result, frame.width)};
-  const std::array<bool, image_count> wanted = {true,
-                                                description.albedo,
-                                                description.depth,
-                                                description.material,
-                                                description.mask,
-                                                description.matte,
-                                                description.normal,
-                                                static_cast<bool>(frame.result),
-                                                false,
-                                                false};
-  for (int i = 0; i < image_count; ++i) {
-    const bool optional_extra = i == static_cast<int>(ImageName::beauty);
-    if (wanted[i] && !images[i].present()) {
-      throw Error(ErrorCode::role_missing, images[i].name, "no image", "an image, as the plan was made for one");
+  std::array<CallerImage, image_count> images;
+  for (std::size_t i = 0; i < image_count; ++i) {
+    const FrameImage& image = frame_images[i];
+    images[i] = image_of(frame, image);
+    const bool is_described = image.described != nullptr;
+    const bool is_needed = is_described ? description.*image.described
+                                        : i == index_of(ImageName::light) ||
+                                              (i == index_of(ImageName::beauty) && static_cast<bool>(frame.result));
+    if (is_needed && !images[i].present()) {
+      throw Error(ErrorCode::role_missing, image.name, "no image", "an image, as the plan was made for one");
     }
-    if (!wanted[i] && images[i].present() && !images[i].is_output && !optional_extra) {
-      throw Error(ErrorCode::usage, images[i].name, "an image", "none, as the plan was made without");
+    if (is_described && !is_needed && images[i].present()) {
+      throw Error(ErrorCode::usage, image.name, "an image", "none, as the plan was made without");
     }
     check_image(images[i], frame.width, frame.height);
   }
@@ -69,22 +112,25 @@ std::array<CallerImage, image_count> check_frame(const Frame& frame, const Frame
   return images;
 }
 
-const cl::Buffer& BoundImages::buffer(ImageName name) const {
-  return ImageBuffers::buffer(static_cast<std::size_t>(has(name) ? name : ImageName::light));
+std::vector<cl::Buffer> BoundImages::buffers(std::initializer_list<ImageName> names) const {
+  std::vector<cl::Buffer> buffers;
+  for (const ImageName name : names) buffers.push_back(buffer(index_of(has(name) ? name : ImageName::light)));
+  return buffers;
 }
 
-params::ImageParams BoundImages::layout(ImageName name) const {
-  return ImageBuffers::layout(static_cast<std::size_t>(name));
+params::FrameLayouts BoundImages::layouts() const {
+  params::FrameLayouts layouts{};
+  for (std::size_t i = 0; i < image_count; ++i) layouts.*frame_images[i].layout = layout(i);
+  return layouts;
 }
 
 bool BoundImages::output_over(ImageName input) const {
-  const auto at = static_cast<std::size_t>(input);
-  return overlap(at, static_cast<std::size_t>(ImageName::scattered)) ||
-         overlap(at, static_cast<std::size_t>(ImageName::result));
+  return overlap(index_of(input), index_of(ImageName::scattered)) ||
+         overlap(index_of(input), index_of(ImageName::result));
 }
 
 bool BoundImages::in_place(ImageName output, ImageName input) const {
-  return same_place(static_cast<std::size_t>(output), static_cast<std::size_t>(input));
+  return same_place(index_of(output), index_of(input));
 }
 
 }  // namespace dermis

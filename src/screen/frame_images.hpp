@@ -1,7 +1,10 @@
-// The images of a frame, checked, and the device memory they lie in.
+// The images of a frame in one table, checked, and the device memory they lie in.
 #pragma once
 
 #include <array>
+#include <initializer_list>
+#include <string>
+#include <vector>
 
 #include "dermis/plan.hpp"
 #include "opencl/image_buffers.hpp"
@@ -11,12 +14,32 @@ namespace dermis {
 enum class ImageName { light, albedo, depth, material, mask, matte, normal, beauty, scattered, result };
 inline constexpr int image_count = 10;
 
+/// An image that a frame may have.
+struct FrameImage {
+  const char* name;
+  int channels;
+  Image Frame::*input;                ///< null for an output
+  OutputImage Frame::*output;         ///< null for an input
+  bool FrameDescription::*described;  ///< null if kernels do not depend on whether frames have it
+  params::ImageParams params::FrameLayouts::*layout;
+  bool takes_integers = false;
+};
+
+/// The images by ImageName.
+extern const std::array<FrameImage, image_count> frame_images;
+
+/// Build constants HAS_DEPTH, HAS_MATERIAL, ...: 1 for the images that frames have, else 0.
+std::string image_constants(const FrameDescription& description);
+
+/// A frame of one pixel with the images of the description, all read at `in`; `out` receives the scattered light.
+Frame one_pixel_frame(const FrameDescription& description, const void* in, void* out);
+
 /// Checks sizes, camera, formats and strides of a frame against the plan's description and returns its images, indexed
 /// by ImageName. Throws Error(usage), or Error(role_missing) if an image that the description has is not there.
 std::array<CallerImage, image_count> check_frame(const Frame& frame, const FrameDescription& description,
                                                  const Options& options);
 
-/// Their buffers, by name.
+/// The buffers of the images of a frame.
 class BoundImages : public ImageBuffers {
  public:
   BoundImages(const cl::Context& context, const Frame& frame, const std::array<CallerImage, image_count>& images)
@@ -24,9 +47,10 @@ class BoundImages : public ImageBuffers {
 
   bool has(ImageName name) const { return ImageBuffers::has(static_cast<std::size_t>(name)); }
 
-  /// The buffer of an image; of the light if the frame has no such image, so that kernels always get a valid argument.
-  const cl::Buffer& buffer(ImageName name) const;
-  params::ImageParams layout(ImageName name) const;
+  /// Buffers as arguments of a kernel. That of the light stands for an image that the frame does not have, so that
+  /// every argument is valid.
+  std::vector<cl::Buffer> buffers(std::initializer_list<ImageName> names) const;
+  params::FrameLayouts layouts() const;
 
   /// True if the outputs may lie over an image that is read.
   bool output_over(ImageName input) const;

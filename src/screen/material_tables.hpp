@@ -1,7 +1,7 @@
-// The materials of a plan, as the kernels read them.
+// The materials of a plan and their taps, as the kernels read them.
 #pragma once
 
-#include <array>
+#include <functional>
 #include <vector>
 
 #include "dermis/plan.hpp"
@@ -10,30 +10,27 @@
 
 namespace dermis {
 
-/// Flat arrays for upload. `nodes` are the tables of the exact integral, and of its samples: R(r), and the light within
-/// the disc of radius r.
+/// Flat arrays for upload. Every material has the same number of terms: those that it lacks weigh nothing.
 struct MaterialTables {
+  int terms_per_material = 1;
+  int farthest_px = 0;  ///< offset of the farthest tap
   std::vector<params::MaterialParams> materials;
-  std::vector<params::TermParams> terms;
   std::vector<params::TapLevelParams> levels;
+  std::vector<params::TermParams> terms;
   std::vector<int> offsets_px;
   std::vector<params::WeightParams> weights;
   std::vector<params::FlatWeight> flat_weights;
   std::vector<params::SmoothWeight> smooth_weights;
-  std::vector<std::array<float, 4>> nodes;
-  std::vector<params::DiscParams> discs;
-  std::vector<params::SampleParams> samples;
-  int farthest_px = 0;  ///< offset of the farthest tap
 };
 
-/// 256 nodes per octave of r^2 keep the interpolation error of R at 2e-5, that of its integral at 1e-6.
-inline constexpr int log2_nodes_per_octave_of_exact = 8;
+/// The taps that each material gets.
+using DesignOf = std::function<TapsDesign(const Material&)>;
 
 /// The most terms that a material has.
-int most_terms(const Device& device, const std::vector<Material>& materials, const Options& options);
+int most_terms(const Device& device, const std::vector<Material>& materials, const DesignOf& design_of);
 
-/// Every material gets so many terms: those that it does not have weigh nothing. Taps are fitted once per device.
+/// Taps are fitted once per device, those of several materials at the same time. `jitter` is Options::jitter.
 MaterialTables make_material_tables(const Device& device, const std::vector<Material>& materials,
-                                    const Options& options, int terms);
+                                    const DesignOf& design_of, double jitter, int terms);
 
 }  // namespace dermis

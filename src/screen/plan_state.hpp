@@ -1,44 +1,38 @@
-// What a Plan holds: all that does not depend on a frame.
+// The parts of a Plan: all that does not depend on a frame.
 #pragma once
 
 #include <atomic>
 #include <cstdint>
-#include <string>
+#include <memory>
+#include <utility>
 
 #include "dermis/plan.hpp"
-#include "opencl/device.hpp"
 #include "opencl/memory_pool.hpp"
+#include "screen/plan_programs.hpp"
+#include "screen/plan_settings.hpp"
 #include "screen/run_memory.hpp"
+#include "screen/scatter_method.hpp"
 
 namespace dermis {
 
 struct Plan::State {
-  Device device;
+  PlanSettings settings;
   std::uint64_t number;  ///< no other plan of the process has it
-  FrameDescription description;
-  Options options;
-  std::string build_options;  ///< that all kernels share
-  cl::Program classify_program;
-  cl::Program program;
-  cl::Buffer materials;
-  cl::Buffer terms;
-  cl::Buffer levels;
-  cl::Buffer offsets;
-  cl::Buffer weights;
-  cl::Buffer flat_weights;
-  cl::Buffer smooth_weights;
-  cl::Buffer nodes;
-  cl::Buffer discs;
-  cl::Buffer samples;
-  int terms_per_material = 1;
-  int farthest_px = 0;           ///< no tap lies farther away
-  bool has_pixel_width = false;  ///< a mask or an albedo scales the profile of each pixel
-  bool is_sheared = false;       ///< taps of the vertical pass lie along the shear of the surface
-  bool item_is_pixel = false;    ///< a work-item computes one pixel (GPUs), else runs of pixels
-  bool tiled = false;            ///< the passes run tile by tile
+  std::unique_ptr<ScatterMethod> method;
+  PlanPrograms sources;
+  cl::Program classification;
+  cl::Program program;   ///< of the method
+  cl::Buffer materials;  ///< MaterialParams
+  cl::Buffer levels;     ///< TapLevelParams
   mutable MemoryPool<RunMemory> memories;
 
-  explicit State(const Device& its_device) : device(its_device), number(next_number()) {}
+  explicit State(PlanSettings its_settings)
+      : settings(std::move(its_settings)), number(next_number()), method(make_scatter_method(settings)) {}
+
+  RunSizes run_sizes(int width, int height) const {
+    const FrameSize frame{width, height};
+    return {frame, method->buffer_bytes(frame)};
+  }
 
  private:
   static std::uint64_t next_number() {

@@ -9,20 +9,20 @@ Reuse::~Reuse() = default;
 Reuse::Reuse(Reuse&&) noexcept = default;
 Reuse& Reuse::operator=(Reuse&&) noexcept = default;
 
-bool Reuse::State::continues(const Plan::State& its_plan, const RunSizes& its_sizes, const Frame& frame) {
+bool Reuse::State::continues(const Plan::State& its_plan, const Frame& frame) {
   // Until the frame is done there is none to follow.
   const std::uint64_t before = std::exchange(plan, 0);
-  if (before == its_plan.number && sizes == its_sizes && camera == frame.camera && mm_per_unit == frame.mm_per_unit) {
+  const RunSizes sizes = its_plan.run_sizes(frame.width, frame.height);
+  if (before == its_plan.number && size == sizes.frame && camera == frame.camera && mm_per_unit == frame.mm_per_unit) {
     return true;
   }
-  sizes = its_sizes;
+  size = sizes.frame;
   camera = frame.camera;
   mm_per_unit = frame.mm_per_unit;
-  const cl::Context context(its_plan.device.context(), true);
-  const std::size_t blocks = static_cast<std::size_t>(sizes.blocks_x()) * sizes.blocks_y();
+  const cl::Context context(its_plan.settings.device.context(), true);
   deferred = cl::Buffer(context, CL_MEM_READ_WRITE, sizes.deferred_bytes());
-  fingerprints = cl::Buffer(context, CL_MEM_READ_WRITE, blocks * sizeof(cl_ulong));
-  changed = cl::Buffer(context, CL_MEM_READ_WRITE, blocks);
+  fingerprints = cl::Buffer(context, CL_MEM_READ_WRITE, size.blocks() * sizeof(cl_ulong));
+  changed = cl::Buffer(context, CL_MEM_READ_WRITE, size.blocks());
   return false;
 }
 

@@ -1,6 +1,7 @@
 // Diffuse light and highlights equal the oracle, keep energy, and do not depend on how they are computed.
 #include "dermis/shading.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -58,6 +59,16 @@ struct Case {
     } else {
       viewer = {Camera::Projection::perspective, {random.uniform(-9, 9), random.uniform(-9, 9), 30}};
     }
+  }
+
+  /// Adds a light without shadows that what is level mirrors to the viewer, and makes the first lobe so wide that a
+  /// quarter of any wave of the surface shines.
+  void add_highlight(Random& random) {
+    const auto& [x, y, z] = viewer.place;
+    const double side = viewer.projection == Camera::Projection::perspective ? 1 : -1;  // a place, or where to
+    sources.push_back({Light{.direction = {side * x, side * y, -side * z}, .colour = {1, 1, 1}}, {}});
+    options.lobes.resize(std::max<std::size_t>(options.lobes.size(), 1));
+    options.lobes[0] = {random.uniform(0.3, 0.6), 0.25};
   }
 
   ShadingFrame frame() {
@@ -124,6 +135,7 @@ TEST_CASE("lit frames are those of the oracle", "[shading]") {
     constexpr std::pair<int, int> sizes[] = {{1, 1}, {43, 19}, {7, 5}};
     const auto [width, height] = sizes[salt % 3];
     Case its(random, width, height, random.coin());
+    if (width > 10) its.add_highlight(random);
     CAPTURE(test_seed(), salt);
     run(Device::open(), its);
     const auto expected = dermis::oracle::shade(its.frame(), its.options);

@@ -40,7 +40,7 @@ class GoodCall {
     CHECK_FALSE(fs::exists(output()));
   }
 
-  /// The same call on another input.
+  /// Checks that the call on another input is refused.
   void check_refuses_input(const std::string& path, int code, const Words& parts, const Words& more = {}) const {
     Words arguments = with(more);
     arguments[1] = path;
@@ -209,7 +209,7 @@ TEST_CASE("no output takes the place of another one or of the input") {
   CHECK_FALSE(fs::exists(picture));
 
   // two names of a file that is not there yet, in the folder that the program runs in
-  const std::string there = "cd '" + call.folder().path().string() + "' &&";
+  const Surroundings there = {.folder = call.folder().path().string()};
   const auto check = [&](const std::string& output, const std::string& stats) {
     Words arguments = call.with({"-o", output, "--stats-json", stats}, "-o");
     check_refused(run_program(arguments, there), 2, {"--stats-json: got " + stats, "not --output as well"});
@@ -365,7 +365,7 @@ TEST_CASE("a device that is not there is an error") {
   call.check_refuses({"--device", "nosuch"}, 7, {"nosuch"});
   call.check_refuses({"--device", "99"}, 7, {"99"});
   call.check_refuses({"--threads", "100000"}, 2, {"threads", "100000"});
-  const std::string no_driver = "OCL_ICD_VENDORS='" + (call.folder() / "nosuch") + "'";
+  const Surroundings no_driver = {.environment = "OCL_ICD_VENDORS=" + (call.folder() / "nosuch")};
   check_refused(run_program(call.with({}), no_driver), 7, {});
   check_refused(run_program({"devices"}, no_driver), 7, {"devices: got none", "OpenCL"});
 }

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -36,7 +37,8 @@ std::map<int, int> count_ids(const std::string& path) {
 TEST_CASE("help and version are no errors") {
   CHECK(run_well({"--version"}) == "dermis " DERMIS_VERSION "\n");
   const std::string help = run_well({"--help"});
-  for (const char* command : {"filter", "info", "devices", "profiles", "compare", "scene", "Exit codes"})
+  for (const char* command : {"filter", "texture", "compare-methods", "light", "info", "devices", "profiles", "compare",
+                              "scene", "Exit codes"})
     CHECK(has(help, command));
   const std::string filter = run_well({"filter", "--help"});
   for (const char* option : {"--model",       "--rank",         "--taps",       "--placement",
@@ -51,6 +53,30 @@ TEST_CASE("help and version are no errors") {
     INFO(option);
     CHECK(has(filter, option));
   }
+}
+
+TEST_CASE("help comes in groups that fit a screen, the usual options first") {
+  for (const std::string command : {"filter", "texture", "taps", "compare-methods"}) {
+    std::istringstream help(run_well({command, "--help"}));
+    std::vector<std::string> groups;
+    int lines = 0;
+    for (std::string line; std::getline(help, line); ++lines) {
+      CAPTURE(command, groups, line);
+      CHECK(line.size() <= 100);
+      CHECK(lines < 24);
+      if (!line.empty() && line.front() != ' ' && line.back() == ':') groups.push_back(line);
+      if (line.empty()) lines = -1;
+    }
+    REQUIRE(groups.size() >= 3);
+    CHECK(groups[0] == "Positionals:");
+    CHECK(groups[1] == (command == "taps" ? "Design:" : "Usual options:"));
+  }
+  const std::string filter = run_well({"filter", "--help"});
+  CHECK(filter.find("--mm-per-unit") < filter.find("--quality"));
+  CHECK(filter.find("--quality") < filter.find("--fov"));
+  CHECK(filter.find("--fov") < filter.find("--rank"));
+  CHECK(has(filter, "--quality draft|preview|final|reference"));
+  CHECK(filter.find("PROFILE is one of") > filter.find("--threads"));
 }
 
 TEST_CASE("results that cannot be printed are an error") {
@@ -117,7 +143,7 @@ TEST_CASE("info needs no device") {
   const TemporaryFolder folder;
   make_scene(folder / "in.exr", "sphere", 20, 20, 4);
   const Outcome outcome =
-      run_program({"info", folder / "in.exr", "--json"}, "OCL_ICD_VENDORS='" + (folder / "nosuch") + "'");
+      run_program({"info", folder / "in.exr", "--json"}, {"OCL_ICD_VENDORS=" + (folder / "nosuch")});
   REQUIRE(outcome.exit_code == 0);
   CHECK(json::parse(outcome.output)["device_memory_bytes"].is_null());
 }
@@ -131,8 +157,7 @@ TEST_CASE("profiles are listed with their sources, and drawn") {
     CHECK(has(table, preset.source));
   }
   const TemporaryFolder folder;
-  const Outcome without =
-      run_program({"profiles", "--plot", folder / "plot.svg"}, "PATH='" + (folder / "nosuch") + "'");
+  const Outcome without = run_program({"profiles", "--plot", folder / "plot.svg"}, {"PATH=" + (folder / "nosuch")});
   check_refused(without, 6, {"--plot", "gnuplot"});
   if (std::system("command -v gnuplot >/dev/null 2>&1") != 0) return;
   const std::string quoted = folder / "it's a plot.svg";

@@ -10,8 +10,14 @@ struct Outcome {
   std::string errors;  // stderr
 };
 
-/// Runs `dermis` with these arguments. `environment` is put before the command, as "NAME=value" or "cd 'folder' &&".
-Outcome run_program(const std::vector<std::string>& arguments, const std::string& environment = {});
+struct Surroundings {
+  std::string environment = {};  ///< one more variable, "NAME=value"
+  std::string folder = {};       ///< where the program runs; empty: where the tests do
+};
+
+/// Runs the program with these arguments in a process of its own, which need not load it. The exit code is -1 if a
+/// signal ends it, as one does after ten minutes.
+Outcome run_program(const std::vector<std::string>& arguments, const Surroundings& surroundings = {});
 
 /// Runs it and requires exit code 0; returns stdout.
 std::string run_well(const std::vector<std::string>& arguments);

@@ -48,7 +48,7 @@ std::vector<float> column(const json& term, std::size_t channel) {
   return values;
 }
 
-/// In float32, in an order by chance.
+/// Sums in float32, in an order by chance.
 float shuffled_sum(std::vector<float> values, Random& random) {
   for (std::size_t i = values.size(); i > 1; --i)
     std::swap(values[i - 1], values[static_cast<std::size_t>(random.integer(0, static_cast<int>(i) - 1))]);
@@ -57,7 +57,7 @@ float shuffled_sum(std::vector<float> values, Random& random) {
   return sum;
 }
 
-/// What every set of taps is like.
+/// Checks what holds for every set of taps.
 void check_taps(const json& set, Random& random) {
   Words keys;
   for (const auto& [key, value] : set.items()) keys.push_back(key);
@@ -343,7 +343,7 @@ TEST_CASE("exported shader code has all the numbers of the taps") {
 TEST_CASE("the figure of taps has all its panels") {
   const TemporaryFolder folder;
   const Words call = {"taps", "skin", "--rank", "2", "--plot"};
-  check_refused(run_program(with(call, {folder / "plot.svg"}), "PATH='" + (folder / "nosuch") + "'"), 6,
+  check_refused(run_program(with(call, {folder / "plot.svg"}), {"PATH=" + (folder / "nosuch")}), 6,
                 {"--plot", "gnuplot"});
   CHECK(fs::is_empty(folder.path()));
   if (!is_installed("gnuplot")) return;

@@ -1,4 +1,4 @@
-// dermis filter --space texture: what is written, and what is refused.
+// dermis texture: what is written, and what is refused.
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -51,8 +51,7 @@ std::string make_layout(const TemporaryFolder& folder) {
 }
 
 Words command(const std::string& input, const std::string& output, const Words& more) {
-  Words words = {"filter",    input,  "-o",     output,       "--space", "texture",
-                 "--profile", "skin", "--role", "light=bake", "--role",  "mask=charts"};
+  Words words = {"texture", input, "-o", output, "--profile", "skin", "--role", "light=bake", "--role", "mask=charts"};
   words.insert(words.end(), more.begin(), more.end());
   return words;
 }
@@ -105,6 +104,7 @@ TEST_CASE("what a texture's filter did") {
       run_well(command(make_layout(folder), folder / "out.exr", {"--mm-per-texel", "1", "--stats-json", "-"}));
   const nlohmann::json json = nlohmann::json::parse(output);
   CHECK(json["method"] == "gaussians");
+  CHECK(json["stretch"] == "--mm-per-texel");
   CHECK(json["texels"] == width * height);
   CHECK(json["texels_empty"] == width * height / 2);
   CHECK(json["predicted_rel_l2"].get<double>() < 1e-3);
@@ -125,23 +125,31 @@ TEST_CASE("what makes no sense of a texture is refused") {
   refused({"--mm-per-texel", "1", "--role", "stretch_u=su"}, 2, {"--mm-per-texel", "stretch_u"});
   refused({"--role", "stretch_u=su"}, 5, {"stretch_v"});
   refused({"--mm-per-unit", "1"}, 5, {"position"});
-  refused({"--mm-per-texel", "1", "--method", "separable"}, 2, {"--method: got separable with --space texture"});
-  refused({"--mm-per-texel", "1", "--taps", "17"}, 2, {"--taps"});
-  refused({"--mm-per-texel", "1", "--quality", "final"}, 2, {"--quality"});
-  refused({"--mm-per-texel", "1", "--fov", "30"}, 2, {"--fov"});
-  refused({"--mm-per-texel", "1", "--cryptomatte", "head=1"}, 2, {"--cryptomatte"});
-  refused({"--mm-per-texel", "1", "--seed", "7"}, 2, {"--seed"});
-  refused({"--mm-per-texel", "1", "--translucency", "--lights", "l.json"}, 2, {"--translucency"});
-  refused({"--mm-per-texel", "1", "--lights", "l.json"}, 2, {"--lights"});
-  refused({"--mm-per-texel", "1", "--compare-methods", "sheet.png"}, 2, {"--compare-methods"});
-  refused({"--mm-per-texel", "1", "--samples", "9"}, 2, {"--space: got texture with --samples 9"});
-  refused({"--mm-per-texel", "1", "--prefilter"}, 2, {"--space: got texture with --prefilter"});
+  refused({"--mm-per-texel", "1", "--method", "separable"}, 2,
+          {"--method: got separable, want gaussians or recursive"});
+  for (const Words& of_the_screen : std::vector<Words>{{"--taps", "17"},
+                                                       {"--quality", "final"},
+                                                       {"--fov", "30"},
+                                                       {"--cryptomatte", "head=1"},
+                                                       {"--seed", "7"},
+                                                       {"--translucency"},
+                                                       {"--lights", "l.json"},
+                                                       {"--samples", "9"},
+                                                       {"--prefilter"}}) {
+    Words more = {"--mm-per-texel", "1"};
+    more.insert(more.end(), of_the_screen.begin(), of_the_screen.end());
+    refused(more, 2, {of_the_screen.front()});
+  }
   refused({"--mm-per-texel", "1", "--albedo-mix", "0.82"}, 5, {"albedo"});
-  check_refused(
-      run_program({"filter", input, "-o", output, "--profile", "skin", "--mm-per-unit", "1", "--method", "recursive"}),
-      2, {"--method: got recursive with --space screen"});
-  check_refused(
-      run_program({"filter", input, "-o", output, "--profile", "skin", "--mm-per-unit", "1", "--mm-per-texel", "1"}), 2,
-      {"--mm-per-texel: got 1 with --space screen"});
+  const Words of_the_screen = {"filter", input, "-o", output, "--profile", "skin", "--mm-per-unit", "1"};
+  const auto screen_refuses = [&](const Words& more, const Words& parts) {
+    Words words = of_the_screen;
+    words.insert(words.end(), more.begin(), more.end());
+    check_refused(run_program(words), 2, parts);
+  };
+  screen_refuses({"--method", "recursive"}, {"--method: got recursive, want separable or exact or disc"});
+  screen_refuses({"--mm-per-texel", "1"}, {"--mm-per-texel"});
+  screen_refuses({"--space", "texture"}, {"--space"});
+  check_refused(run_program({"texture", input, "-o", output, "--mm-per-texel", "1"}), 2, {"--profile"});
   CHECK_THROWS(Picture::read(output));
 }

@@ -10,6 +10,7 @@
 #include "dermis/oracle/compare.hpp"
 #include "dermis/oracle/scenes.hpp"
 #include "dermis/plan.hpp"
+#include "inputs/natural_picture.hpp"
 #include "support/catch.hpp"
 #include "support/compare_light.hpp"
 #include "support/natural_pictures.hpp"
@@ -38,7 +39,7 @@ class NaturalCard {
  public:
   explicit NaturalCard(int side_px) : side_px_(side_px), whole_px_(side_px + 2 * margin_px) {
     for (int c = 0; c < 3; ++c) {
-      const std::vector<double> picture = natural_picture(side_px, 11 + static_cast<std::uint32_t>(c));
+      const std::vector<double> picture = dermis::bench::natural_picture(side_px, 11 + static_cast<std::uint32_t>(c));
       light_[c] = picture;
       truth_[c] = convolved(picture, c);
     }

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "dermis/frame.hpp"
-#include "support/half.hpp"
+#include "inputs/half.hpp"
 #include "support/random.hpp"
 
 class GuardedImage {
@@ -40,7 +40,7 @@ class GuardedImage {
   void set(int x, int y, int c, double value) {
     switch (layout_.format) {
       case dermis::Format::f16:
-        return store(x, y, c, double_to_half(value));
+        return store(x, y, c, dermis::bench::half_of(value));
       case dermis::Format::f32:
         return store(x, y, c, static_cast<float>(value));
       case dermis::Format::u8:
@@ -55,7 +55,7 @@ class GuardedImage {
   double get(int x, int y, int c) const {
     switch (layout_.format) {
       case dermis::Format::f16:
-        return half_to_double(load<std::uint16_t>(x, y, c));
+        return dermis::bench::value_of_half(load<std::uint16_t>(x, y, c));
       case dermis::Format::f32:
         return load<float>(x, y, c);
       case dermis::Format::u8:

@@ -1,62 +1,24 @@
 #include "support/natural_pictures.hpp"
 
-#include <fftw3.h>
-
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <functional>
 #include <numbers>
-#include <random>
 
-namespace {
+#include "inputs/natural_picture.hpp"
+#include "inputs/spectrum.hpp"
 
-using Spectrum = std::vector<std::complex<double>>;
-
-void transform(Spectrum& values, int side_px, int direction) {
-  auto* data = reinterpret_cast<fftw_complex*>(values.data());
-  const fftw_plan plan = fftw_plan_dft_2d(side_px, side_px, data, data, direction, FFTW_ESTIMATE);
-  fftw_execute(plan);
-  fftw_destroy_plan(plan);
-}
-
-int mirrored(int i, int side_px) { return std::min(i, side_px - i); }
-
-}  // namespace
-
-std::vector<double> natural_picture(int side_px, std::uint32_t seed) {
-  std::mt19937 engine(seed);
-  std::normal_distribution<double> normal;
-  Spectrum noise(static_cast<std::size_t>(side_px) * side_px);
-  for (int y = 0; y < side_px; ++y) {
-    for (int x = 0; x < side_px; ++x) {
-      const double frequency = std::hypot(mirrored(x, side_px), mirrored(y, side_px));
-      const std::complex<double> value(normal(engine), normal(engine));
-      noise[static_cast<std::size_t>(y) * side_px + x] = frequency > 0 ? value / frequency : 0;
-    }
-  }
-  transform(noise, side_px, FFTW_BACKWARD);
-  double squares = 0;
-  for (const auto& value : noise) squares += value.real() * value.real();
-  const double deviation = std::sqrt(squares / static_cast<double>(noise.size()));
-  // exp(s n) of normal n has a standard deviation of sqrt(exp(s^2) - 1) times its mean.
-  const double strength = std::sqrt(std::log(1.25)) / deviation;
-  std::vector<double> picture;
-  for (const auto& value : noise) picture.push_back(std::exp(strength * value.real()));
-  return picture;
-}
+using dermis::bench::mirrored;
+using dermis::bench::Spectrum;
+using dermis::bench::to_frequencies;
 
 NaturalPictures::NaturalPictures(int side_px, int count, std::uint32_t seed)
     : side_px_(side_px), power_(static_cast<std::size_t>(side_px / 2 + 1) * (side_px / 2 + 1)) {
   for (int i = 0; i < count; ++i) {
-    const std::vector<double> picture = natural_picture(side_px, seed + static_cast<std::uint32_t>(i));
-    Spectrum spectrum(picture.begin(), picture.end());
-    transform(spectrum, side_px, FFTW_FORWARD);
-    for (int y = 0; y < side_px; ++y) {
-      for (int x = 0; x < side_px; ++x) {
-        const auto at = static_cast<std::size_t>(mirrored(y, side_px)) * (side_px / 2 + 1) + mirrored(x, side_px);
-        power_[at] += std::norm(spectrum[static_cast<std::size_t>(y) * side_px + x]);
-      }
-    }
+    const std::vector<double> picture = dermis::bench::natural_picture(side_px, seed + static_cast<std::uint32_t>(i));
+    const std::vector<double> power = dermis::bench::power_of(picture, side_px);
+    std::transform(power_.begin(), power_.end(), power.begin(), power_.begin(), std::plus<>());
   }
 }
 
@@ -80,7 +42,7 @@ ExactKernel::ExactKernel(const dermis::Profile& profile, double pixel_mm, int si
         total += value;
       }
     }
-    transform(kernel, side_px, FFTW_FORWARD);
+    to_frequencies(kernel, side_px);
     spectrum_[c].resize(light.size());
     for (int y = 0; y <= half; ++y) {
       for (int x = 0; x <= half; ++x) {
@@ -95,7 +57,7 @@ double ExactKernel::rel_l2(const std::array<std::vector<double>, 3>& kernels, co
   std::array<std::vector<double>, 3> spectra;
   for (int c = 0; c < 3; ++c) {
     Spectrum spectrum(kernels[c].begin(), kernels[c].end());
-    transform(spectrum, side_px_, FFTW_FORWARD);
+    to_frequencies(spectrum, side_px_);
     for (int y = 0; y < count; ++y) {
       for (int x = 0; x < count; ++x) {
         spectra[c].push_back(spectrum[static_cast<std::size_t>(y) * side_px_ + x].real());

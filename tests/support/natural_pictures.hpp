@@ -1,4 +1,5 @@
-// Pictures with the statistics of natural images, and what the exact convolution with a profile makes of them.
+// The power spectrum of pictures with the statistics of natural images, and distances from the exact convolution of
+// them with a profile.
 #pragma once
 
 #include <array>
@@ -8,9 +9,8 @@
 #include "dermis/profile.hpp"
 #include "dermis/taps.hpp"
 
-/// The mean power spectrum of some random pictures, side_px a side, that repeat at their edges: exponentials of noise
-/// whose amplitude falls as 1 / frequency, with a standard deviation of half their mean. Only the quadrant of
-/// non-negative frequencies; a kernel that is even in x and y does not tell the others apart.
+/// The power spectrum of some natural pictures (inputs/natural_picture.hpp), side_px a side, summed. It has only the
+/// quadrant of non-negative frequencies; a kernel that is even in x and y does not tell the others apart.
 class NaturalPictures {
  public:
   NaturalPictures(int side_px, int count, std::uint32_t seed);
@@ -23,9 +23,6 @@ class NaturalPictures {
   int side_px_;
   std::vector<double> power_;
 };
-
-/// One such picture.
-std::vector<double> natural_picture(int side_px, std::uint32_t seed);
 
 /// The profile on pixels of one size, in every channel, as its spectrum; what lies beyond half the side is cut off and
 /// made up for by all that is left.

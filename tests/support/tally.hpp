@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "dermis/oracle/reference.hpp"
+#include "inputs/half.hpp"
 #include "support/catch.hpp"
 #include "support/random_frame.hpp"
 
@@ -25,7 +26,7 @@ inline void compare(const GuardedImage& output, const dermis::oracle::Picture& e
       for (int c = 0; c < 3; ++c) {
         const double value = expected(x, y, c);
         const bool half = output.layout().format == dermis::Format::f16;
-        const double allowed = bound(x, y, c) + (half ? half_rounding(value) : 0);
+        const double allowed = bound(x, y, c) + (half ? dermis::bench::half_last_place(value) / 2 : 0);
         const double error = std::abs(output.get(x, y, c) - value);
         tally.largest_bound = std::max(tally.largest_bound, bound(x, y, c) / largest);
         ++tally.values;

@@ -8,6 +8,7 @@
 
 #include "dermis/plan.hpp"
 #include "dermis/tap_tables.hpp"
+#include "inputs/natural_picture.hpp"
 #include "support/catch.hpp"
 #include "support/natural_pictures.hpp"
 #include "support/random.hpp"
@@ -161,7 +162,7 @@ TEST_CASE("the filter is as far off on a plane as a tolerance predicts, and with
     const double radius_px = random.uniform(12, 24);
     const double px_per_mm = radius_px / profile.half_width(profile.widest_channel(), 0.999);
     const Card card{side_px, side_px, px_per_mm,
-                    natural_picture(side_px, test_seed() + 7 + static_cast<unsigned>(round))};
+                    dermis::bench::natural_picture(side_px, test_seed() + 7 + static_cast<unsigned>(round))};
     // Beyond twice the radius lie some ten thousandths of the light.
     const int margin_px = 2 * static_cast<int>(radius_px);
     constexpr int step = 5;  // The error is smooth, so that neighbours tell nothing new.

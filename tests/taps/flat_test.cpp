@@ -5,8 +5,8 @@
 
 #include "dermis/plan.hpp"
 #include "dermis/tap_tables.hpp"
+#include "inputs/natural_picture.hpp"
 #include "support/catch.hpp"
-#include "support/natural_pictures.hpp"
 #include "support/random.hpp"
 #include "taps/card.hpp"
 
@@ -138,7 +138,7 @@ TEST_CASE("the filter is as far from exact as its taps predict", "[flat]") {
     const Card card{.width = side_px,
                     .height = side_px,
                     .px_per_mm = px_per_mm,
-                    .light = natural_picture(side_px, test_seed() + 5)};
+                    .light = dermis::bench::natural_picture(side_px, test_seed() + 5)};
     const std::vector<float> exact = card.filtered(device, profile, {.method = Method::exact});
     for (const TapsDesign& design : designs) {
       const std::vector<float> scattered = card.filtered(device, profile, {.taps = design});

@@ -1,5 +1,6 @@
 // The kernels of texture space equal the oracle within the bound that it derives from float rounding.
 #include "dermis/oracle/texture.hpp"
+#include "inputs/half.hpp"
 #include "support/catch.hpp"
 #include "texture/random_texture.hpp"
 
@@ -36,7 +37,7 @@ void compare(const GuardedImage& output, const oracle::Picture& expected, const 
         }
         const bool half = output.layout().format == dermis::Format::f16;
         const double error = std::abs(output.get(x, y, c) - value);
-        const double allowed = bound(x, y, c) + (half ? half_rounding(value) : 0);
+        const double allowed = bound(x, y, c) + (half ? dermis::bench::half_last_place(value) / 2 : 0);
         CAPTURE(x, y, c, value, output.get(x, y, c), error, allowed);
         if (!(error <= allowed)) REQUIRE(error <= allowed);
         ++tally.values;

@@ -9,16 +9,10 @@
 
 namespace dermis::program {
 
-void add_bad_pixels_argument(CLI::App& app, std::string& word) {
-  app.add_option("--bad-pixels", word,
-                 "pixels whose light or albedo is not finite, which never give light to others: keep leaves them as "
-                 "they are, zero makes them black, error writes nothing")
-      ->check(one_of({"keep", "zero", "error"}))
-      ->capture_default_str();
-}
-
-BadPixels bad_pixels_of(const std::string& word) {
-  return word == "zero" ? BadPixels::zero : word == "error" ? BadPixels::error : BadPixels::keep;
+void add_bad_pixels_argument(CLI::App& app, BadPixels& what) {
+  add_word(app, "--bad-pixels", what,
+           "pixels whose light or albedo is not finite, which never give light to others: keep leaves them as they "
+           "are, zero makes them black, error writes nothing");
 }
 
 Error bad_pixels_named_as_option(const Error& error) {

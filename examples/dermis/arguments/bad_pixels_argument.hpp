@@ -1,8 +1,7 @@
-/// What becomes of pixels that are not finite: --bad-pixels.
+/// --bad-pixels says what becomes of pixels that are not finite.
 #pragma once
 
 #include <CLI/CLI.hpp>
-#include <string>
 
 #include "dermis/error.hpp"
 #include "dermis/plan.hpp"
@@ -10,15 +9,12 @@
 namespace dermis::program {
 
 /// Adds --bad-pixels.
-void add_bad_pixels_argument(CLI::App& app, std::string& word);
-
-/// The word is one that the option takes.
-BadPixels bad_pixels_of(const std::string& word);
+void add_bad_pixels_argument(CLI::App& app, BadPixels& what);
 
 /// A library's error that wants another value of the option, with the option's name in it; any other error as it is.
 Error bad_pixels_named_as_option(const Error& error);
 
-/// On standard error, if there were any and the run went on.
+/// Says on standard error how many there were, if there were any and the run went on.
 void warn_of_bad_pixels(const Stats& stats, BadPixels what);
 
 }  // namespace dermis::program

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <cstdint>
+#include <functional>
 #include <string_view>
 #include <utility>
 
@@ -15,67 +15,54 @@
 namespace dermis::program {
 namespace {
 
-constexpr std::string_view automatic = "auto";
 constexpr int most_taps = 2047;
 
-bool is_number_of_taps(std::int64_t taps) { return taps >= 3 && taps <= most_taps && taps % 2 == 1; }
+using Words = std::vector<std::pair<std::string_view, int>>;
 
-CLI::Validator taps_or_dense(bool or_auto) {
-  return {[or_auto](const std::string& text) {
-            const auto taps = parse_whole(text);
-            const bool good = text == "dense" || (or_auto && text == automatic) || (taps && is_number_of_taps(*taps));
-            return good ? std::string{}
-                        : refusal(text, fmt::format("an odd number from 3 to {} or dense{}", most_taps,
-                                                    or_auto ? " or auto" : ""));
-          },
-          ""};
+/// The words that an option takes in place of a number, and the numbers that stand for them.
+Words words_for_counts(bool or_dense, bool or_auto) {
+  Words words;
+  if (or_dense) words.emplace_back("dense", DesignArguments::dense);
+  if (or_auto) words.emplace_back("auto", DesignArguments::automatic);
+  return words;
 }
 
-CLI::Validator rank_of_any_model(bool or_auto) {
-  return {[or_auto](const std::string& text) {
-            const auto rank = parse_whole(text);
-            const bool good = (or_auto && text == automatic) || (rank && *rank >= 1 && *rank <= 6);
-            return good ? std::string{}
-                        : refusal(text, fmt::format("a whole number from 1 to 6, as the model allows{}",
-                                                    or_auto ? ", or auto" : ""));
-          },
-          ""};
+std::string text_of_count(int count) {
+  for (const auto& [word, value] : words_for_counts(true, true))
+    if (value == count) return std::string(word);
+  return std::to_string(count);
 }
 
-template <typename Value>
-using Named = std::pair<std::string_view, Value>;
-
-constexpr std::array<Named<Model>, 6> models = {{{"pre-integrated", Model::pre_integrated},
-                                                 {"artist", Model::artist},
-                                                 {"guided", Model::guided},
-                                                 {"svd", Model::svd},
-                                                 {"gaussians", Model::gaussians},
-                                                 {"optimised", Model::optimised}}};
-
-constexpr std::array<Named<Placement>, 4> placements = {{{"uniform", Placement::uniform},
-                                                         {"importance", Placement::importance},
-                                                         {"quadratic", Placement::quadratic},
-                                                         {"optimised", Placement::optimised}}};
-
-/// The name is one of them: the option checks that.
-template <typename Value, std::size_t count>
-Value value_of(const std::array<Named<Value>, count>& names, std::string_view name) {
-  for (const auto& [known, value] : names)
-    if (known == name) return value;
-  return names.front().second;
+/// The number or the word; none if it is neither, or a number that is not allowed.
+std::optional<int> parse_count(const std::string& text, const Words& words, const std::function<bool(int)>& allowed) {
+  for (const auto& [word, value] : words)
+    if (word == text) return value;
+  const auto number = parse_whole(text);
+  if (!number || *number < 1 || *number > most_taps || !allowed(static_cast<int>(*number))) return std::nullopt;
+  return static_cast<int>(*number);
 }
 
-template <typename Value, std::size_t count>
-std::string_view name_in(const std::array<Named<Value>, count>& names, Value value) {
-  for (const auto& [name, known] : names)
-    if (known == value) return name;
-  return {};
+/// Adds an option that takes a number or one of the words; `wanted` says which numbers.
+void add_count(CLI::App& app, const std::string& option, std::optional<int>& target, const std::string& help,
+               const Words& words, std::function<bool(int)> allowed, std::string wanted, int otherwise) {
+  std::string type = "N";
+  for (const auto& [word, value] : words) {
+    type += fmt::format("|{}", word);
+    wanted += fmt::format(" or {}", word);
+  }
+  const auto parse = [words, allowed = std::move(allowed)](const std::string& text) {
+    return parse_count(text, words, allowed);
+  };
+  const CLI::Validator check(
+      [parse, wanted](const std::string& text) { return parse(text) ? std::string{} : refusal(text, wanted); }, "");
+  app.add_option_function<std::string>(
+         option, [parse, &target](const std::string& text) { target = parse(text); }, help)
+      ->check(check)
+      ->type_name(type)
+      ->default_str(text_of_count(otherwise));
 }
 
 }  // namespace
-
-std::string_view name_of(Model model) { return name_in(models, model); }
-std::string_view name_of(Placement placement) { return name_in(placements, placement); }
 
 std::string command_text(const TapsDesign& design) {
   std::string text = fmt::format(" --model {}", name_of(design.model));
@@ -88,68 +75,53 @@ std::string command_text(const TapsDesign& design) {
 }
 
 void add_design_arguments(CLI::App& app, DesignArguments& arguments) {
-  app.add_option("--model", arguments.model,
-                 "the products of one-dimensional functions that stand for the profile: pre-integrated, artist or "
-                 "guided (Jimenez et al. 2015), svd, gaussians, or optimised for natural images")
-      ->check(one_of({"pre-integrated", "artist", "guided", "svd", "gaussians", "optimised"}))
-      ->default_str(std::string(name_of(arguments.defaults.model)));
   const bool or_auto = arguments.may_be_automatic;
-  app.add_option("--rank", arguments.rank,
-                 fmt::format("how many products: 1..6 for svd and gaussians, 1..3 for optimised, 1 for the others{}",
-                             or_auto ? "; auto: as few as are good enough" : ""))
-      ->check(rank_of_any_model(or_auto))
-      ->type_name(or_auto ? "N|auto" : "N")
-      ->default_str(or_auto ? std::string(automatic) : std::to_string(arguments.defaults.rank));
-  app.add_option("--taps", arguments.taps,
-                 fmt::format("taps per pass, odd; dense: one on every pixel{}",
-                             or_auto ? "; auto: for each width of kernel as few as are good enough" : ""))
-      ->check(taps_or_dense(or_auto))
-      ->type_name(or_auto ? "N|dense|auto" : "N|dense")
-      ->default_str(or_auto ? std::string(automatic) : std::to_string(arguments.defaults.count));
-  app.add_option("--placement", arguments.placement,
-                 "where taps lie: uniform, importance (the same light each), quadratic or optimised (up to 65 taps; "
-                 "more lie as by importance)")
-      ->check(one_of({"uniform", "importance", "quadratic", "optimised"}))
-      ->default_str(std::string(name_of(arguments.defaults.placement)));
-  app.add_option(
-         "--guide", arguments.guide,
-         fmt::format("--model guided: from 0, sharper, to 4, smoother; {} if not given", arguments.defaults.guide))
+  const TapsDesign& defaults = arguments.defaults;
+  add_word(app, "--model", arguments.model,
+           "the products of one-dimensional functions that stand for the profile: pre-integrated, artist or guided "
+           "(Jimenez et al. 2015), svd, gaussians, or optimised for natural images",
+           defaults.model);
+  add_count(
+      app, "--rank", arguments.rank,
+      fmt::format("how many products: 1..6 for svd and gaussians, 1..3 for optimised, 1 for the others{}",
+                  or_auto ? "; auto: as few as are good enough" : ""),
+      words_for_counts(false, or_auto), [](int rank) { return rank <= 6; },
+      "a whole number from 1 to 6, as the model allows", or_auto ? DesignArguments::automatic : defaults.rank);
+  add_count(
+      app, "--taps", arguments.taps,
+      fmt::format("taps per pass, odd; dense: one on every pixel{}",
+                  or_auto ? "; auto: for each width of kernel as few as are good enough" : ""),
+      words_for_counts(true, or_auto), [](int taps) { return taps >= 3 && taps % 2 == 1; },
+      fmt::format("an odd number from 3 to {}", most_taps), or_auto ? DesignArguments::automatic : defaults.count);
+  add_word(app, "--placement", arguments.placement,
+           "where taps lie: uniform, importance (the same light each), quadratic or optimised (up to 65 taps; more lie "
+           "as by importance)",
+           defaults.placement);
+  app.add_option("--guide", arguments.guide,
+                 fmt::format("--model guided: from 0, sharper, to 4, smoother; {} if not given", defaults.guide))
       ->check(real_number([](double guide) { return guide >= 0 && guide <= 4; }, "a number from 0 to 4"));
   app.add_flag("--non-negative", arguments.non_negative,
                "--model optimised, --rank 2 or 3: keep the approximated profile above zero, for a little error");
 }
 
 std::string first_given(const DesignArguments& arguments) {
-  if (arguments.taps) return "--taps " + *arguments.taps;
-  if (arguments.rank) return "--rank " + *arguments.rank;
-  if (arguments.model) return "--model " + *arguments.model;
-  if (arguments.placement) return "--placement " + *arguments.placement;
+  if (arguments.taps) return "--taps " + text_of_count(*arguments.taps);
+  if (arguments.rank) return "--rank " + text_of_count(*arguments.rank);
+  if (arguments.model) return fmt::format("--model {}", name_of(*arguments.model));
+  if (arguments.placement) return fmt::format("--placement {}", name_of(*arguments.placement));
   if (arguments.guide) return fmt::format("--guide {}", *arguments.guide);
   return arguments.non_negative ? "--non-negative" : "";
 }
 
-bool asks_for_automatic(const DesignArguments& arguments) {
-  return arguments.rank == automatic || arguments.taps == automatic;
-}
-
 TapsDesign design_of(const DesignArguments& arguments, double tolerance) {
-  // Beyond so many, the kernel is wide and the fit slow; `chosen_designs` takes more where they are needed.
-  constexpr int most_automatic_taps = 33;
   TapsDesign design = arguments.defaults;
-  design.tolerance = tolerance;
-  if (arguments.model) design.model = value_of(models, *arguments.model);
-  if (arguments.placement) design.placement = value_of(placements, *arguments.placement);
+  design.model = arguments.model.value_or(design.model);
+  design.placement = arguments.placement.value_or(design.placement);
   if (highest_rank(design.model) == 1) design.rank = 1;
-  if (tolerance > 0) {
-    design.rank = 0;
-    design.count = most_automatic_taps;
-  }
-  if (arguments.rank && arguments.rank != automatic) design.rank = static_cast<int>(*parse_whole(*arguments.rank));
-  if (arguments.taps == "dense") {
-    design.count = most_taps;
-  } else if (arguments.taps && arguments.taps != automatic) {
-    design.count = static_cast<int>(*parse_whole(*arguments.taps));
-  }
+  if (tolerance > 0) design = design_within(tolerance, design);
+  if (arguments.rank.value_or(DesignArguments::automatic) != DesignArguments::automatic) design.rank = *arguments.rank;
+  const int taps = arguments.taps.value_or(DesignArguments::automatic);
+  if (taps != DesignArguments::automatic) design.count = taps == DesignArguments::dense ? most_taps : taps;
   if (arguments.guide) {
     if (design.model != Model::guided)
       throw Error(ErrorCode::usage, "--guide",

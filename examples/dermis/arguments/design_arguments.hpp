@@ -1,37 +1,34 @@
-/// Which taps to make, on the command line.
+/// The options that say which taps to make.
 #pragma once
 
 #include <CLI/CLI.hpp>
 #include <optional>
 #include <string>
-#include <string_view>
 
 #include "dermis/error.hpp"
 #include "dermis/taps.hpp"
 
 namespace dermis::program {
 
-/// As an option spells it.
-std::string_view name_of(Model model);
-std::string_view name_of(Placement placement);
-
-/// What was not given is as in `defaults`; but the rank is 1 if the model knows no other.
+/// An option that was not given is as in `defaults`, but the rank is 1 if the model knows no other.
 struct DesignArguments {
+  static constexpr int automatic = 0;
+  static constexpr int dense = -1;
+
   TapsDesign defaults = {};
-  bool may_be_automatic = false;  ///< rank and taps may be "auto"
-  std::optional<std::string> model = {};
-  std::optional<std::string> rank = {};
-  std::optional<std::string> taps = {};  ///< a number or "dense"
-  std::optional<std::string> placement = {};
+  bool may_be_automatic = false;
+  std::optional<Model> model = {};
+  std::optional<int> rank = {};  ///< or automatic
+  std::optional<int> taps = {};  ///< or automatic or dense
+  std::optional<Placement> placement = {};
   std::optional<double> guide = {};
   bool non_negative = false;
+
+  bool asks_for_automatic() const { return rank == automatic || taps == automatic; }
 };
 
 /// The first of these options that was given, with its value; empty if none was.
 std::string first_given(const DesignArguments& arguments);
-
-/// True if "auto" was given.
-bool asks_for_automatic(const DesignArguments& arguments);
 
 /// The options that ask for a design, with a space before each; rank and taps only if there is no tolerance.
 std::string command_text(const TapsDesign& design);

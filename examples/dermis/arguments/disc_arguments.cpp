@@ -34,6 +34,7 @@ void add_disc_arguments(CLI::App& app, DiscArguments& arguments) {
   app.add_option("--disc", arguments.plane,
                  "--method disc: the plane of the discs, that of the surface or of the screen")
       ->check(one_of({"tangent", "screen"}))
+      ->type_name("tangent|screen")
       ->default_str("tangent");
   app.add_flag("--prefilter", arguments.prefilter,
                "--method disc: samples read the mean over as many pixels as they stand for, for less noise");

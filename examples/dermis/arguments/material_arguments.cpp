@@ -32,7 +32,7 @@ void add_material_arguments(CLI::App& app, MaterialArguments& arguments) {
                                  "how every pixel scatters, its width scaled by the mask if there is one");
   profile->type_name("PROFILE");
   material->excludes(profile);
-  app.footer(profile_grammar() + "\n\n" + app.get_footer());
+  app.footer(profile_grammar());
 }
 
 std::vector<NamedProfile> parse_profiles(const MaterialArguments& arguments) {

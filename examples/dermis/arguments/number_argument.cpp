@@ -4,6 +4,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "arguments/word_argument.hpp"
@@ -51,6 +52,14 @@ CLI::Validator number_above_zero(std::string_view what) {
 
 CLI::Validator number_0_to_1() {
   return real_number([](double value) { return value >= 0 && value <= 1; }, "a number from 0 to 1");
+}
+
+void add_seed_argument(CLI::App& app, std::uint32_t& seed) {
+  constexpr std::int64_t most = std::numeric_limits<std::uint32_t>::max();
+  app.add_option("--seed", seed, "of the rotation, of taps or of discs")
+      ->check(whole_number([](std::int64_t number) { return number >= 0 && number <= most; },
+                           fmt::format("a whole number from 0 to {}", most)))
+      ->capture_default_str();
 }
 
 }  // namespace dermis::program

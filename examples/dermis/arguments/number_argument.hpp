@@ -21,4 +21,7 @@ CLI::Validator whole_number(std::function<bool(std::int64_t)> allowed, std::stri
 CLI::Validator number_above_zero(std::string_view what);
 CLI::Validator number_0_to_1();
 
+/// Adds --seed.
+void add_seed_argument(CLI::App& app, std::uint32_t& seed);
+
 }  // namespace dermis::program

@@ -3,14 +3,8 @@
 #include <fmt/format.h>
 
 #include "arguments/number_argument.hpp"
-#include "dermis/exr.hpp"
 
 namespace dermis::program {
-
-void add_picture_arguments(CLI::App& app, PictureArguments& arguments) {
-  app.add_option("file", arguments.path, "the OpenEXR file to read")->required()->type_name("FILE");
-  add_reading_arguments(app, arguments);
-}
 
 void add_role_arguments(CLI::App& app, PictureArguments& arguments) {
   app.add_option("--role", arguments.roles,
@@ -22,21 +16,36 @@ void add_role_arguments(CLI::App& app, PictureArguments& arguments) {
   app.add_option("--layer", arguments.layer, "the view layer, if there are several; else the first")->type_name("NAME");
 }
 
-void add_reading_arguments(CLI::App& app, PictureArguments& arguments) {
-  add_role_arguments(app, arguments);
+void add_scale_argument(CLI::App& app, PictureArguments& arguments) {
   app.add_option("--mm-per-unit", arguments.mm_per_unit,
                  "millimetres per scene unit; no default, since it decides how far light spreads")
       ->check(number_above_zero("millimetres per scene unit"));
-  auto* fov =
-      app.add_option("--fov", arguments.camera.fov_deg, "horizontal field of view of the display window, degrees");
+}
+
+void add_camera_arguments(CLI::App& app, exr::CameraHint& camera) {
+  auto* fov = app.add_option("--fov", camera.fov_deg, "horizontal field of view of the display window, degrees");
   fov->check(real_number([](double deg) { return deg > 0 && deg < 180; }, "degrees, above 0 and below 180"));
-  auto* focal = app.add_option("--focal-px", arguments.camera.focal_px, "focal length, pixels");
+  auto* focal = app.add_option("--focal-px", camera.focal_px, "focal length, pixels");
   focal->check(number_above_zero("a focal length in pixels"));
-  auto* scale = app.add_option("--px-per-unit", arguments.camera.orthographic_px_per_unit,
-                               "orthographic camera: pixels per scene unit");
+  auto* scale =
+      app.add_option("--px-per-unit", camera.orthographic_px_per_unit, "orthographic camera: pixels per scene unit");
   scale->check(number_above_zero("pixels per scene unit"));
   fov->excludes(focal)->excludes(scale);
   focal->excludes(scale);
+}
+
+std::string command_text(const exr::CameraHint& camera) {
+  std::string text;
+  if (camera.fov_deg) text += fmt::format(" --fov {}", *camera.fov_deg);
+  if (camera.focal_px) text += fmt::format(" --focal-px {}", *camera.focal_px);
+  if (camera.orthographic_px_per_unit) text += fmt::format(" --px-per-unit {}", *camera.orthographic_px_per_unit);
+  return text;
+}
+
+std::string text_of_roles(const PictureArguments& arguments) {
+  std::string text;
+  for (const std::string& role : arguments.roles) text += " --role " + role;
+  return arguments.layer.empty() ? text : text + " --layer " + arguments.layer;
 }
 
 }  // namespace dermis::program

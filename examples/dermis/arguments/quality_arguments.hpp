@@ -1,29 +1,28 @@
-/// How good the result is to be, on the command line.
+/// The options that say how good the result is to be.
 #pragma once
 
 #include <CLI/CLI.hpp>
 #include <optional>
 #include <string>
-#include <string_view>
+
+#include "dermis/taps.hpp"
 
 namespace dermis::program {
 
 struct QualityArguments {
-  std::string quality;              ///< empty if it was not given
+  std::optional<Quality> quality;
   std::optional<double> tolerance;  ///< instead of a quality
 
-  bool given() const { return !quality.empty() || tolerance.has_value(); }
+  bool given() const { return quality || tolerance; }
 };
 
-/// What is meant if nothing else is asked for.
-inline constexpr std::string_view default_quality = "final";
-/// The quality of the exact method.
-inline constexpr std::string_view reference_quality = "reference";
+/// The quality that is meant if nothing else is asked for.
+inline constexpr Quality default_quality = Quality::final;
 
-/// Adds --quality and --tolerance.
-void add_quality_arguments(CLI::App& app, QualityArguments& arguments);
+void add_quality_argument(CLI::App& app, QualityArguments& arguments);
+void add_tolerance_argument(CLI::App& app, QualityArguments& arguments);
 
-/// The option that was given, or that of the default, with a space before it.
+/// The option that was given, or that of the default: "--quality final".
 std::string command_text(const QualityArguments& arguments);
 
 /// The tolerance that was given, or that of the quality, or else that of the default; 0 for the reference.

@@ -4,12 +4,10 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <vector>
+#include <utility>
 
 namespace dermis::program {
 namespace {
-
-std::vector<std::string> strings(std::initializer_list<std::string_view> words) { return {words.begin(), words.end()}; }
 
 bool contains(const std::vector<std::string>& words, const std::string& word) {
   return std::find(words.begin(), words.end(), word) != words.end();
@@ -27,15 +25,15 @@ std::string refusal(std::string_view seen, std::string_view wanted) {
   return fmt::format("got {}, want {}", seen.empty() ? "nothing" : seen, wanted);
 }
 
-CLI::Validator one_of(std::initializer_list<std::string_view> words) {
-  return {[words = strings(words)](const std::string& text) {
+CLI::Validator one_of(std::vector<std::string> words) {
+  return {[words = std::move(words)](const std::string& text) {
             return contains(words, text) ? std::string{} : refusal(text, fmt::format("{}", fmt::join(words, " or ")));
           },
           ""};
 }
 
 CLI::Validator file_name_ending(std::initializer_list<std::string_view> endings) {
-  return {[endings = strings(endings)](const std::string& text) {
+  return {[endings = std::vector<std::string>(endings.begin(), endings.end())](const std::string& text) {
             const std::string ending = lower_case(std::filesystem::path(text).extension().string());
             if (contains(endings, ending)) return std::string{};
             return refusal(text, fmt::format("a file name that ends in {}", fmt::join(endings, " or ")));

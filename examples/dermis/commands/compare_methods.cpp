@@ -1,26 +1,38 @@
-#include "commands/compare_methods.hpp"
-
+// dermis compare-methods: one frame under each method, side by side.
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <cstdio>
-#include <deque>
+#include <memory>
+#include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
-#include "arguments/material_arguments.hpp"
-#include "dermis/oracle/compare.hpp"
+#include "arguments/bad_pixels_argument.hpp"
+#include "arguments/device_arguments.hpp"
+#include "arguments/help.hpp"
+#include "arguments/number_argument.hpp"
+#include "arguments/word_argument.hpp"
+#include "commands/commands.hpp"
+#include "commands/surface_input.hpp"
+#include "dermis/error.hpp"
 #include "dermis/oracle/rule_2012.hpp"
 #include "files/output_file.hpp"
-#include "files/picture_png.hpp"
 #include "report/gnuplot.hpp"
+#include "report/methods_sheet.hpp"
 
 namespace dermis::program {
 namespace {
 
-/// The error that a map shows brightest, of the mean of the light.
-constexpr double brightest_error = 0.1;
+struct CompareMethodsArguments {
+  std::string input;
+  std::string output;
+  std::string truth;
+  SurfaceArguments surface;
+  DeviceArguments device;
+  Options options;  ///< those that hold for all methods
+};
 
 std::size_t values_of(const Frame& frame) {
   return 3 * static_cast<std::size_t>(frame.width) * static_cast<std::size_t>(frame.height);
@@ -46,7 +58,7 @@ std::vector<oracle::SliceMaterial> slice_materials(const std::vector<Material>& 
   return slices;
 }
 
-/// What a pixel shows more of its light shows in the beauty by the albedo.
+/// The beauty gains the albedo times what the light has gained.
 MethodPicture by_rule_2012(const std::vector<Material>& materials, const Frame& frame, const LoadedFrame& loaded,
                            std::vector<float> beauty) {
   constexpr int taps = 25;
@@ -59,51 +71,8 @@ MethodPicture by_rule_2012(const std::vector<Material>& materials, const Frame& 
   return picture;
 }
 
-oracle::Picture as_picture(int width, int height, const std::vector<float>& values) {
-  oracle::Picture picture(width, height, 3);
-  std::copy(values.begin(), values.end(), picture.values.begin());
-  return picture;
-}
-
-/// 1 where two pictures differ.
-oracle::Picture changed_pixels(int width, int height, const std::vector<float>& a, const std::vector<float>& b) {
-  oracle::Picture changed(width, height, 1);
-  for (std::size_t i = 0; i < a.size(); ++i)
-    if (a[i] != b[i]) changed.values[i / 3] = 1;
-  return changed;
-}
-
-/// The mean error of the channels, of the mean of the reference where it counts.
-std::vector<float> error_map(const std::vector<float>& values, const std::vector<float>& reference,
-                             const oracle::Picture& where) {
-  double sum = 0;
-  double count = 0;
-  for (std::size_t i = 0; i < reference.size(); ++i) {
-    if (where.values[i / 3] == 0) continue;
-    sum += std::abs(static_cast<double>(reference[i]));
-    ++count;
-  }
-  const double unit = count > 0 ? sum / count * brightest_error : 1;
-  std::vector<float> map(reference.size() / 3);
-  for (std::size_t i = 0; i < reference.size(); ++i) {
-    const double error = std::abs(static_cast<double>(values[i]) - static_cast<double>(reference[i])) / 3 / unit;
-    if (where.values[i / 3] != 0) map[i / 3] = std::min(1.0F, map[i / 3] + static_cast<float>(error));
-  }
-  return map;
-}
-
-double relative_l2(int width, int height, const std::vector<float>& a, const std::vector<float>& b,
-                   const oracle::Picture& where) {
-  return oracle::compare(as_picture(width, height, a), as_picture(width, height, b), where).relative_l2;
-}
-
-std::string panel(const std::string& title, const std::filesystem::path& png) {
-  return fmt::format("set title {} offset 0,-0.8\nplot {} binary filetype=png with rgbimage notitle\n",
-                     script_string(title), script_string(png.string()));
-}
-
-}  // namespace
-
+/// The frame as it is, by the rule of 2012, by the separable method of ranks 1 and 2 with 17 taps, by discs of 55
+/// samples, and by the exact method. `frame` is of raw light and with albedo. Says on stderr what it works on.
 std::vector<MethodPicture> picture_methods(const Device& device, const std::vector<Material>& materials,
                                            const Frame& frame, const LoadedFrame& loaded, std::vector<float> beauty,
                                            const Options& options) {
@@ -112,74 +81,93 @@ std::vector<MethodPicture> picture_methods(const Device& device, const std::vect
     Options its = options;
     its.method = method;
     its.taps = {.rank = rank, .count = 17};
-    its.sheared = true;
-    its.jitter = 0;
     return its;
   };
-  std::vector<Material> same_taps = materials;
-  for (Material& material : same_taps) material.taps.reset();
-
   std::vector<MethodPicture> pictures = {{"no scattering", beauty, loaded.light}};
   say("rule of 2012");
   pictures.push_back(by_rule_2012(materials, frame, loaded, std::move(beauty)));
   for (const int rank : {1, 2}) {
     const std::string name = fmt::format("dermis, rank {}, 17 taps", rank);
     say(name);
-    pictures.push_back(by_plan(device, same_taps, frame, name, with(Method::separable, rank)));
+    pictures.push_back(by_plan(device, materials, frame, name, with(Method::separable, rank)));
   }
   const std::string disc = "disc, 55 samples, prefiltered";
   say(disc);
   Options with_discs = with(Method::disc, 1);
   with_discs.disc = {.samples = 55, .prefiltered = true};
-  pictures.push_back(by_plan(device, same_taps, frame, disc, with_discs));
+  pictures.push_back(by_plan(device, materials, frame, disc, with_discs));
   say("exact (takes the longest)");
-  pictures.push_back(by_plan(device, same_taps, frame, "exact", with(Method::exact, 1)));
+  pictures.push_back(by_plan(device, materials, frame, "exact", with(Method::exact, 1)));
   return pictures;
 }
 
-void draw_methods(const char* argument, const std::filesystem::path& path, int width, int height,
-                  const std::vector<MethodPicture>& pictures) {
-  const bool has_truth = pictures.back().scattered.empty();
-  const MethodPicture& truth = pictures.back();
-  const MethodPicture& exact = has_truth ? pictures[pictures.size() - 2] : truth;
-  const oracle::Picture where = changed_pixels(width, height, exact.scattered, pictures.front().scattered);
+/// The path-traced picture, or whatever the frame is to be compared with.
+MethodPicture read_truth(const std::string& path, const Frame& frame) {
+  const exr::Picture picture = exr::Picture::read(path);
+  const exr::Roles roles = exr::find_roles(picture);
+  exr::require(picture, roles, exr::Role::beauty);
+  if (picture.width() != frame.width || picture.height() != frame.height)
+    throw Error(ErrorCode::usage, "--truth", fmt::format("{}x{} pixels", picture.width(), picture.height()),
+                fmt::format("the {}x{} of the input", frame.width, frame.height));
+  return {"path traced", exr::load(picture, roles, exr::Role::beauty), {}};
+}
 
-  std::deque<TemporaryFile> files;
-  std::string upper;
-  std::string lower;
-  for (const MethodPicture& picture : pictures) {
-    const auto beside = [&] {
-      return files.emplace_back(argument, fmt::format("{}.{}", path.string(), files.size())).path();
-    };
-    const std::filesystem::path beauty = beside();
-    write_srgb_png(beauty, width, height, picture.beauty);
-    upper += panel(picture.name, beauty);
-    std::string numbers;
-    if (has_truth && &picture != &truth)
-      numbers = fmt::format("{:.1f} % off the path tracer",
-                            100 * relative_l2(width, height, picture.beauty, truth.beauty, where));
-    if (picture.scattered.empty()) {
-      lower += "set multiplot next\n";
-      continue;
-    }
-    if (&picture != &exact)
-      numbers = fmt::format("{:.2f} % off the exact method",
-                            100 * relative_l2(width, height, picture.scattered, exact.scattered, where)) +
-                (numbers.empty() ? "" : ", " + numbers);
-    const std::filesystem::path map = beside();
-    write_heatmap_png(map, width, height, error_map(picture.scattered, exact.scattered, where));
-    lower += panel(numbers, map);
+int run_compare_methods(const CompareMethodsArguments& arguments) {
+  check_surface(arguments.surface);
+  const SurfaceRequest request = request_of(arguments.surface);
+  check_writable("--output", arguments.output);
+  need_gnuplot("--output");
+  SurfaceInput input = read_surface(arguments.input, request, arguments.options, true);
+  count_pixels(input, request);
+  std::vector<float> beauty = exr::load(input.picture, input.roles, exr::Role::beauty);
+  Frame frame = input.frame(request.mm_per_unit);
+  frame.beauty = image_of(beauty);
+  frame.result = {.host = beauty.data()};  // of light that comes through
+  std::optional<MethodPicture> truth;
+  if (!arguments.truth.empty()) truth = read_truth(arguments.truth, frame);
+
+  const Device device = open_device(arguments.device);
+  transmit_light(device, request, arguments.options.lighting, frame, input);
+  std::vector<MethodPicture> pictures =
+      picture_methods(device, materials_of(request.profiles), frame, input.loaded, beauty, arguments.options);
+  if (truth) pictures.push_back(std::move(*truth));
+  draw_methods("--output", arguments.output, frame.width, frame.height, pictures);
+  return 0;
+}
+
+void add_compare_methods_arguments(CLI::App& app, CompareMethodsArguments& arguments) {
+  {
+    const HelpGroup group(app, "Usual options");
+    app.add_option("file", arguments.input, "the OpenEXR file to read")->required()->type_name("FILE");
+    app.add_option("-o,--output", arguments.output, "the picture to draw; needs gnuplot")
+        ->required()
+        ->check(file_name_ending({".png"}))
+        ->type_name("SHEET.png");
+    add_scale_argument(app, arguments.surface.picture);
+    add_material_arguments(app, arguments.surface.materials);
+    app.add_option("--truth", arguments.truth, "a picture to show beside them, for instance the same view path-traced")
+        ->type_name("FILE.exr");
   }
-  constexpr int widest_px = 480;
-  constexpr int title_px = 30;
-  const int panel_px = std::clamp(width, 240, widest_px);
-  const auto columns = static_cast<int>(pictures.size());
-  const int row_px = panel_px * height / width + title_px;
-  const std::string script = fmt::format(
-      "unset tics\nunset border\nunset key\nset size ratio -1\nset margins 0.5,0.5,0.2,1.6\n"
-      "set xrange [0:{}]\nset yrange [0:{}]\nset multiplot layout 2,{}\n{}{}unset multiplot\n",
-      width - 1, height - 1, columns, upper, lower);
-  draw_figure(argument, path, {columns * panel_px, 2 * row_px}, script);
+  add_reading_groups(app, arguments.surface);
+  {
+    const HelpGroup group(app, "Translucency");
+    add_translucency_arguments(app, arguments.surface.translucency);
+  }
+  const HelpGroup group(app, "Device and pixels");
+  add_bad_pixels_argument(app, arguments.options.bad_pixels);
+  add_seed_argument(app, arguments.options.seed);
+  add_device_arguments(app, arguments.device);
+}
+
+}  // namespace
+
+Command add_compare_methods(CLI::App& parent) {
+  CLI::App* app = parent.add_subcommand("compare-methods",
+                                        "the beauty of a G-buffer under each method side by side, with the error of "
+                                        "each; takes long, as the exact method is one");
+  const auto arguments = std::make_shared<CompareMethodsArguments>();
+  add_compare_methods_arguments(*app, *arguments);
+  return {app, [arguments] { return run_compare_methods(*arguments); }};
 }
 
 }  // namespace dermis::program

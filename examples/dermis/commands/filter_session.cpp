@@ -2,14 +2,18 @@
 
 namespace dermis::program {
 
-void FilterSession::plan(const std::vector<Material>& materials, const FrameDescription& frames,
-                         const Options& options) {
-  if (plan_ && materials_ == materials && frames_ == frames && options_ == options) return;
+const Device& FilterSession::device() {
+  if (!device_) device_.emplace(open_device(arguments_));
+  return *device_;
+}
+
+const Plan& FilterSession::plan(const ChosenTaps& taps, const FrameDescription& frames) {
+  if (plan_ && taps_.materials == taps.materials && frames_ == frames && taps_.options == taps.options) return *plan_;
   plan_.reset();
-  plan_.emplace(device_, materials, frames, options);
-  materials_ = materials;
+  plan_.emplace(device(), taps.materials, frames, taps.options);
+  taps_ = taps;
   frames_ = frames;
-  options_ = options;
+  return *plan_;
 }
 
 Stats FilterSession::run(const Frame& frame, const Progress& progress) {

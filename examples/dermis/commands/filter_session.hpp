@@ -1,9 +1,10 @@
-/// What the pictures of one call share: a device, and a plan as long as nothing asks for another one.
+/// The pictures of one call share a device, and a plan as long as none of them asks for another one.
 #pragma once
 
 #include <optional>
 #include <vector>
 
+#include "arguments/device_arguments.hpp"
 #include "dermis/plan.hpp"
 
 namespace dermis::program {
@@ -11,22 +12,23 @@ namespace dermis::program {
 class FilterSession {
  public:
   /// `reuses`: pictures take the light of what has not changed from the one before.
-  FilterSession(Device device, bool reuses) : device_(std::move(device)), reuses_(reuses) {}
+  FilterSession(DeviceArguments device, bool reuses) : arguments_(std::move(device)), reuses_(reuses) {}
 
-  const Device& device() const { return device_; }
+  /// The device, which is opened when it is first asked for.
+  const Device& device();
 
-  /// Makes a plan, unless that of the picture before is the same.
-  void plan(const std::vector<Material>& materials, const FrameDescription& frames, const Options& options);
+  /// The plan of these, which is that of the picture before if nothing has changed.
+  const Plan& plan(const ChosenTaps& taps, const FrameDescription& frames);
 
   /// Runs the plan.
   Stats run(const Frame& frame, const Progress& progress);
 
  private:
-  Device device_;
+  DeviceArguments arguments_;
+  std::optional<Device> device_;
   bool reuses_;
-  std::vector<Material> materials_;
+  ChosenTaps taps_;
   FrameDescription frames_;
-  Options options_;
   std::optional<Plan> plan_;
   Reuse reuse_;
 };

@@ -27,12 +27,13 @@ using exr::Role;
 using nlohmann::json;
 
 struct InfoArguments {
+  std::string path;
   PictureArguments picture;
   MaterialArguments materials;
   bool json = false;
 };
 
-/// How far a profile reaches.
+/// The distance that a profile reaches.
 struct Reach {
   std::string profile;
   double radius_mm = 0;
@@ -107,7 +108,7 @@ std::size_t bytes_of_images(const LoadedFrame& loaded) {
   return (inputs + scattered) * bytes_of(Format::f32);
 }
 
-/// What a run would need, if the roles are there and a device can tell.
+/// The memory that a run would need, if the roles are there and a device can tell.
 std::optional<Memory> find_memory(const Info& info, const std::vector<NamedProfile>& profiles) {
   try {
     const std::vector<NamedProfile> asked =
@@ -205,12 +206,12 @@ std::string text_of(const Info& info, const std::string& path) {
 
 int run_info(const InfoArguments& arguments) {
   const std::vector<NamedProfile> profiles = parse_profiles(arguments.materials);
-  Info info{exr::Picture::read(arguments.picture.path), {}, {}, {}, {}, 0, {}};
+  Info info{exr::Picture::read(arguments.path), {}, {}, {}, {}, 0, {}};
   info.roles = exr::find_roles(info.picture, arguments.picture.roles, arguments.picture.layer);
   find_camera(info, arguments.picture.camera);
   find_surfaces(info, profiles, arguments.picture.mm_per_unit);
   info.memory = find_memory(info, profiles);
-  fmt::print("{}", arguments.json ? json_text_of(info, arguments.picture.path) : text_of(info, arguments.picture.path));
+  fmt::print("{}", arguments.json ? json_text_of(info, arguments.path) : text_of(info, arguments.path));
   return 0;
 }
 
@@ -219,7 +220,10 @@ int run_info(const InfoArguments& arguments) {
 Command add_info(CLI::App& parent) {
   CLI::App* app = parent.add_subcommand("info", "what a picture holds, and what the filter would make of it");
   const auto arguments = std::make_shared<InfoArguments>();
-  add_picture_arguments(*app, arguments->picture);
+  app->add_option("file", arguments->path, "the OpenEXR file to read")->required()->type_name("FILE");
+  add_role_arguments(*app, arguments->picture);
+  add_scale_argument(*app, arguments->picture);
+  add_camera_arguments(*app, arguments->picture.camera);
   add_material_arguments(*app, arguments->materials);
   app->add_flag("--json", arguments->json, "as JSON");
   return {app, [arguments] { return run_info(*arguments); }};

@@ -11,7 +11,9 @@
 #include <string>
 #include <vector>
 
+#include "arguments/device_arguments.hpp"
 #include "arguments/number_argument.hpp"
+#include "arguments/output_arguments.hpp"
 #include "arguments/picture_arguments.hpp"
 #include "arguments/word_argument.hpp"
 #include "commands/commands.hpp"
@@ -29,6 +31,7 @@ namespace {
 using exr::Role;
 
 struct LightArguments {
+  std::string path;
   PictureArguments picture;
   std::string lights;
   std::string output;
@@ -77,7 +80,7 @@ void clear_others(exr::Picture& picture, const exr::Roles& roles, Role role) {
 int run_light(const LightArguments& arguments) {
   check_writable("--output", arguments.output);
   const LightsFile lights("--lights", arguments.lights);
-  exr::Picture picture = exr::Picture::read(arguments.picture.path);
+  exr::Picture picture = exr::Picture::read(arguments.path);
   const exr::Roles roles = exr::find_roles(picture, arguments.picture.roles, arguments.picture.layer);
   for (const Role role : {Role::position, Role::normal, Role::albedo}) exr::require(picture, roles, role);
   const Viewer viewer = viewer_of(arguments, picture, roles);
@@ -118,7 +121,7 @@ Command add_light(CLI::App& parent) {
   CLI::App* app = parent.add_subcommand(
       "light", "light a G-buffer that has position, normal and albedo, for `dermis filter` to scatter");
   const auto arguments = std::make_shared<LightArguments>();
-  app->add_option("file", arguments->picture.path, "the OpenEXR file to read")->required()->type_name("FILE");
+  app->add_option("file", arguments->path, "the OpenEXR file to read")->required()->type_name("FILE");
   app->add_option("--lights", arguments->lights, "the lights, and the highlight")->required()->type_name("FILE.json");
   app->add_option("-o,--output", arguments->output,
                   "the OpenEXR file to write: the input with its passes of diffuse light (DiffDir), glossy light "
@@ -141,10 +144,8 @@ Command add_light(CLI::App& parent) {
                   "half the side of the square of a shadow map that is averaged over, texels; 0: the nearest one")
       ->check(real_number([](double value) { return value >= 0 && value <= 16; }, "a number from 0 to 16"))
       ->capture_default_str();
-  app->add_option("--compression", arguments->compression,
-                  "of the result; else that of the input, or zip if that loses data")
-      ->check(one_of({"none", "rle", "zip", "zips", "piz", "pxr24", "b44", "b44a", "dwaa", "dwab"}));
-  app->add_option("--device", arguments->device, "number or part of the name of a device")->type_name("NAME");
+  add_compression_argument(*app, arguments->compression);
+  add_device_argument(*app, arguments->device);
   app->footer(std::string(lights_grammar));
   return {app, [arguments] { return run_light(*arguments); }};
 }

@@ -7,10 +7,12 @@
 #include <cstddef>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "arguments/design_arguments.hpp"
+#include "arguments/help.hpp"
 #include "arguments/number_argument.hpp"
 #include "arguments/profile_argument.hpp"
 #include "arguments/word_argument.hpp"
@@ -27,62 +29,31 @@ namespace {
 struct TapsArguments {
   std::string profile;
   DesignArguments design;
-  std::string fetch = "integer";
+  Fetch fetch = Fetch::integer;
   double pixel_mm = 0.25;
   std::string json;
   std::string csv;
-  std::string language;
+  std::optional<Language> language;
   std::string output;
   std::string plot;
 };
 
-/// An option that names a file. "-" is standard output.
-struct Output {
-  std::string option;
-  std::string path;
-};
-
-std::vector<Output> outputs_of(const TapsArguments& arguments) {
-  std::vector<Output> outputs;
-  const auto add = [&](const char* option, const std::string& path) {
-    if (!path.empty()) outputs.push_back({option, path});
-  };
-  add("--json", arguments.json);
-  add("--csv", arguments.csv);
-  add("--plot", arguments.plot);
-  if (!arguments.language.empty())
-    add(arguments.output.empty() ? "--export" : "--output", arguments.output.empty() ? "-" : arguments.output);
+/// The files of the command line, some without a name. Source code that has no file is printed.
+std::vector<NamedFile> outputs_of(const TapsArguments& arguments) {
+  std::vector<NamedFile> outputs = {
+      {"--json", arguments.json}, {"--csv", arguments.csv}, {"--plot", arguments.plot}, {"--output", arguments.output}};
+  if (arguments.language && arguments.output.empty()) outputs.back() = {"--export", "-"};
   return outputs;
 }
 
-/// No output may take the place of another one or of the profile's file.
-void check_outputs_differ(const TapsArguments& arguments, const std::vector<Output>& outputs) {
-  const auto place = [](const std::string& path) {
-    return std::filesystem::weakly_canonical(std::filesystem::absolute(path));
-  };
+void check_outputs_of(const TapsArguments& arguments) {
+  if (!arguments.output.empty() && !arguments.language)
+    throw Error(ErrorCode::usage, "--output", arguments.output, "--export c, glsl or hlsl with it");
+  std::vector<NamedFile> taken;
   const std::size_t colon = arguments.profile.find(':');
-  std::vector<Output> taken;
   if (colon != std::string::npos && colon + 1 < arguments.profile.size())
     taken.push_back({"the profile", arguments.profile.substr(colon + 1)});
-  for (const Output& output : outputs) {
-    for (const Output& other : taken) {
-      if (output.path == "-" && other.path == "-")
-        throw Error(ErrorCode::usage, output.option, "standard output", "a file, for " + other.option + " is there");
-      if (output.path != "-" && place(output.path) == place(other.path))
-        throw Error(ErrorCode::usage, output.option, output.path, "a file that is not " + other.option + " as well");
-    }
-    taken.push_back(output);
-  }
-}
-
-std::vector<Output> checked_outputs(const TapsArguments& arguments) {
-  if (!arguments.output.empty() && arguments.language.empty())
-    throw Error(ErrorCode::usage, "--output", arguments.output, "--export c, glsl or hlsl with it");
-  std::vector<Output> outputs = outputs_of(arguments);
-  check_outputs_differ(arguments, outputs);
-  for (const Output& output : outputs)
-    if (output.path != "-") check_writable(output.option, output.path);
-  return outputs;
+  check_outputs(taken, outputs_of(arguments));
 }
 
 bool is_on_every_pixel(const std::vector<double>& offsets_px) {
@@ -92,7 +63,7 @@ bool is_on_every_pixel(const std::vector<double>& offsets_px) {
 }
 
 TapSet make_set(const TapsArguments& arguments, const Profile& profile, const TapsDesign& design) {
-  const bool dense = arguments.design.taps == "dense";
+  const bool dense = arguments.design.taps == DesignArguments::dense;
   const int most_px = design.count / 2;
   const auto check = [&](bool fits, double radius_px) {
     if (dense && !fits)
@@ -105,8 +76,7 @@ TapSet make_set(const TapsArguments& arguments, const Profile& profile, const Ta
   const double radius_px = profile.half_width(profile.widest_channel(), 0.999) / arguments.pixel_mm;
   check(radius_px < most_px + 1, radius_px);
   try {
-    TapSet set =
-        make_tap_set(profile, design, arguments.pixel_mm, arguments.fetch == "linear" ? Fetch::linear : Fetch::integer);
+    TapSet set = make_tap_set(profile, design, arguments.pixel_mm, arguments.fetch);
     check(is_on_every_pixel(set.offsets_px), most_px + 1);
     return set;
   } catch (const Error& error) {
@@ -114,33 +84,52 @@ TapSet make_set(const TapsArguments& arguments, const Profile& profile, const Ta
   }
 }
 
-void write(const std::string& option, const std::string& path, const std::string& text) {
-  if (path == "-")
-    fmt::print("{}", text);
-  else if (!path.empty())
-    write_text(option, path, text);
-}
-
 int run_taps(const TapsArguments& arguments) {
   const TapsDesign design = design_of(arguments.design);
   const Profile profile = parse_profile("PROFILE", arguments.profile);
-  const std::vector<Output> outputs = checked_outputs(arguments);
+  check_outputs_of(arguments);
   TapsReport report{.profile = without_folders(arguments.profile),
-                    .model = std::string(name_of(design.model)),
-                    .placement = std::string(name_of(design.placement)),
-                    .asked = design.count,
+                    .design = design,
                     .width_follows_albedo = profile.width_follows_albedo(),
                     .set = make_set(arguments, profile, design)};
   if (!arguments.plot.empty()) plot_taps("--plot", arguments.plot, profile, design, report);
-  write("--json", arguments.json, json_text_of(report));
-  write("--csv", arguments.csv, csv_of(report));
-  const bool exports = !arguments.language.empty();
-  if (exports)
-    write("--output", arguments.output.empty() ? "-" : arguments.output, source_of(report, arguments.language));
-  const bool printed =
-      std::any_of(outputs.begin(), outputs.end(), [](const Output& output) { return output.path == "-"; });
-  if (!printed) fmt::print("{}", table_of(report));
+  write_text_or_print("--json", arguments.json, json_text_of(report));
+  write_text_or_print("--csv", arguments.csv, csv_of(report));
+  if (arguments.language)
+    write_text_or_print("--output", arguments.output.empty() ? "-" : arguments.output,
+                        source_of(report, *arguments.language));
+  const std::vector<NamedFile> outputs = outputs_of(arguments);
+  if (std::none_of(outputs.begin(), outputs.end(), [](const NamedFile& output) { return output.path == "-"; }))
+    fmt::print("{}", table_of(report));
   return 0;
+}
+
+void add_taps_arguments(CLI::App& app, TapsArguments& arguments) {
+  {
+    const HelpGroup group(app, "Design");
+    app.add_option("profile", arguments.profile, "what to make discrete, see below")->required()->type_name("PROFILE");
+    app.add_option("--pixel-mm", arguments.pixel_mm, "size of a pixel on the surface, mm")
+        ->check(real_number([](double mm) { return mm >= 1e-12 && mm <= 1e12; }, "a size in mm, 1e-12..1e12"))
+        ->capture_default_str();
+    add_design_arguments(app, arguments.design);
+    add_word(app, "--fetch", arguments.fetch, "how taps read: integer, whole pixels only, or linear, between two");
+  }
+  const HelpGroup group(app, "Results");
+  app.add_option("--json", arguments.json,
+                 "write profile, model, rank, taps, fetch, pixel_mm, predicted_rel_l2, offsets_px and terms: scale and "
+                 "weights per offset, [R, G, B] each; - is standard output, in place of the table")
+      ->type_name("FILE");
+  app.add_option("--csv", arguments.csv,
+                 "write a row per term and offset: offset_px,term,R,G,B,scale_R,scale_G,scale_B, in which R,G,B are "
+                 "weights and terms count from 1; - is standard output, in place of the table")
+      ->type_name("FILE");
+  add_word(app, "--export", arguments.language, "write source code", Language::c)->default_str("");
+  app.add_option("-o,--output", arguments.output, "file of the source code; else it is printed, not the table")
+      ->type_name("FILE");
+  app.add_option("--plot", arguments.plot,
+                 "draw slices of kernel and profile, singular values, step response and weights; needs gnuplot")
+      ->check(file_name_ending({".svg", ".png"}))
+      ->type_name("FILE.svg|png");
 }
 
 }  // namespace
@@ -148,32 +137,7 @@ int run_taps(const TapsArguments& arguments) {
 Command add_taps(CLI::App& parent) {
   CLI::App* app = parent.add_subcommand("taps", "the taps of a profile, and how far off they are");
   const auto arguments = std::make_shared<TapsArguments>();
-  app->add_option("profile", arguments->profile, "what to make discrete, see below")->required()->type_name("PROFILE");
-  add_design_arguments(*app, arguments->design);
-  app->add_option("--fetch", arguments->fetch, "how taps read: integer, whole pixels only, or linear, between two")
-      ->check(one_of({"integer", "linear"}))
-      ->capture_default_str();
-  app->add_option("--pixel-mm", arguments->pixel_mm, "size of a pixel on the surface, mm")
-      ->check(real_number([](double mm) { return mm >= 1e-12 && mm <= 1e12; }, "a size in mm, 1e-12..1e12"))
-      ->capture_default_str();
-  app->add_option(
-         "--json", arguments->json,
-         "write profile, model, rank, taps, fetch, pixel_mm, predicted_rel_l2, offsets_px and terms: scale and "
-         "weights per offset, [R, G, B] each; - is standard output, in place of the table")
-      ->type_name("FILE");
-  app->add_option("--csv", arguments->csv,
-                  "write a row per term and offset: offset_px,term,R,G,B,scale_R,scale_G,scale_B, in which R,G,B are "
-                  "weights and terms count from 1; - is standard output, in place of the table")
-      ->type_name("FILE");
-  app->add_option("--export", arguments->language, "write source code: c, glsl or hlsl")
-      ->check(one_of({"c", "glsl", "hlsl"}))
-      ->type_name("LANGUAGE");
-  app->add_option("-o,--output", arguments->output, "file of the source code; else it is printed, not the table")
-      ->type_name("FILE");
-  app->add_option("--plot", arguments->plot,
-                  "draw slices of kernel and profile, singular values, step response and weights; needs gnuplot")
-      ->check(file_name_ending({".svg", ".png"}))
-      ->type_name("FILE.svg|png");
+  add_taps_arguments(*app, *arguments);
   app->footer(profile_grammar());
   return {app, [arguments] { return run_taps(*arguments); }};
 }

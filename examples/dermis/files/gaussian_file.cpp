@@ -4,28 +4,22 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "dermis/error.hpp"
+#include "files/input_file.hpp"
 
 namespace dermis::program {
 namespace {
 
 using nlohmann::json;
 
-/// A value of the file, for an error: at most 80 characters of it.
-std::string printed(const json& value) {
-  return value.dump(-1, ' ', false, json::error_handler_t::replace).substr(0, 80);
-}
-
 class Reader {
  public:
   Reader(std::string_view argument, const std::string& path) : argument_(argument), path_(path) {}
 
   std::vector<GaussianTerm> read() const {
-    const json root = parse();
+    const json root = read_json(argument_, path_, "a JSON file with the terms of a sum of Gaussians");
     if (!root.is_object() || !root.contains("terms") || !root["terms"].is_array() || root["terms"].empty())
       fail("no list of terms", R"({"terms": [{"variance_mm2": v, "weight": [r, g, b]}, ...]})");
     std::vector<GaussianTerm> terms;
@@ -37,20 +31,6 @@ class Reader {
   }
 
  private:
-  json parse() const {
-    std::error_code ignored;
-    std::ifstream file(path_);
-    if (!file || !std::filesystem::is_regular_file(path_, ignored))
-      throw Error(ErrorCode::input_missing, argument_,
-                  path_.empty() ? "no file name" : path_ + ", which cannot be read",
-                  "a JSON file with the terms of a sum of Gaussians");
-    try {
-      return json::parse(file);
-    } catch (const json::exception& error) {
-      fail(error.what(), "JSON");
-    }
-  }
-
   GaussianTerm read_term(const json& term, const std::string& place) const {
     if (!term.is_object() || !term.contains("variance_mm2") || !term.contains("weight"))
       fail(place + " = " + printed(term), "an object with variance_mm2 and weight");

@@ -6,12 +6,12 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <initializer_list>
 #include <nlohmann/json.hpp>
 
 #include "dermis/error.hpp"
 #include "dermis/exr.hpp"
+#include "files/input_file.hpp"
 
 namespace dermis::program {
 namespace {
@@ -20,11 +20,6 @@ using nlohmann::json;
 
 constexpr std::array kind_names = {"directional", "point", "spot"};
 constexpr std::array depth_names = {"linear", "projective"};
-
-/// A value of the file, for an error: at most 80 characters of it.
-std::string printed(const json& value) {
-  return value.dump(-1, ' ', false, json::error_handler_t::replace).substr(0, 80);
-}
 
 /// One object of the file and where it stands there.
 class Object {
@@ -126,19 +121,6 @@ class Object {
   const json& value_;
 };
 
-json parse(std::string_view argument, const std::string& path) {
-  std::error_code ignored;
-  std::ifstream file(path);
-  if (!file || !std::filesystem::is_regular_file(path, ignored))
-    throw Error(ErrorCode::input_missing, argument, path.empty() ? "no file name" : path + ", which cannot be read",
-                "a JSON file with lights");
-  try {
-    return json::parse(file);
-  } catch (const json::exception& error) {
-    throw Error(ErrorCode::input_unsupported, fmt::format("{} {}", argument, path), error.what(), "JSON");
-  }
-}
-
 /// The depths of a map: of the channel that is named, of the depth pass, or of the only channel.
 std::vector<float> depths_of(const Object& map, const exr::Picture& picture) {
   if (map.has("channel")) return picture.plane(map.text("channel", "the name of a channel"));
@@ -195,7 +177,7 @@ ShadingOptions read_highlight(const Object& object) {
 }  // namespace
 
 LightsFile::LightsFile(std::string_view argument, const std::string& path) {
-  const json root = parse(argument, path);
+  const json root = read_json(argument, path, "a JSON file with lights");
   const std::string name = fmt::format("{} {}", argument, path);
   const Object all(name, "", root);
   all.allow({"lights", "highlight"});

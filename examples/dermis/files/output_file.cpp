@@ -28,6 +28,23 @@ void check_writable(std::string_view argument, const fs::path& path) {
     throw Error(ErrorCode::output, argument, name, "a file in a folder that can be written");
 }
 
+void check_outputs(std::vector<NamedFile> taken, const std::vector<NamedFile>& outputs) {
+  const auto place = [](const std::string& path) { return fs::weakly_canonical(fs::absolute(path)); };
+  for (const auto& [argument, path] : outputs) {
+    if (path.empty()) continue;
+    const bool is_printed = path == "-";
+    for (const NamedFile& other : taken) {
+      if (is_printed != (other.path == "-")) continue;
+      if (is_printed)
+        throw Error(ErrorCode::usage, argument, "standard output", "a file, for " + other.argument + " is there");
+      if (place(path) == place(other.path))
+        throw Error(ErrorCode::usage, argument, path, "a file that is not " + other.argument + " as well");
+    }
+    if (!is_printed) check_writable(argument, path);
+    taken.push_back({argument, path});
+  }
+}
+
 TemporaryFile::TemporaryFile(std::string_view argument, fs::path target)
     : argument_(argument), target_(std::move(target)), path_(target_) {
   path_.replace_filename(fmt::format(".{}.{}.tmp", target_.filename().string(), getpid()));
@@ -54,6 +71,13 @@ void write_text(std::string_view argument, const fs::path& path, std::string_vie
   file.close();
   if (!file) throw Error(ErrorCode::output, argument, path.string(), "a file that can be written");
   temporary.commit();
+}
+
+void write_text_or_print(std::string_view argument, const std::string& path, std::string_view text) {
+  if (path == "-")
+    fmt::print("{}", text);
+  else if (!path.empty())
+    write_text(argument, path, text);
 }
 
 }  // namespace dermis::program

@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <array>
-#include <filesystem>
-#include <fstream>
 #include <optional>
+#include <sstream>
 
 #include "arguments/number_argument.hpp"
 #include "dermis/error.hpp"
+#include "files/input_file.hpp"
 
 namespace dermis::program {
 namespace {
@@ -39,11 +39,7 @@ class Reader {
   Reader(std::string_view argument, const std::string& path) : argument_(argument), path_(path) {}
 
   std::vector<TableRow> read() {
-    std::error_code ignored;
-    std::ifstream file(path_);
-    if (!file || !std::filesystem::is_regular_file(path_, ignored))
-      throw Error(ErrorCode::input_missing, argument_,
-                  path_.empty() ? "no file name" : path_ + ", which cannot be read", "a CSV file of r_mm,R,G,B");
+    std::istringstream file(read_text(argument_, path_, "a CSV file of r_mm,R,G,B"));
     std::vector<TableRow> rows;
     bool first = true;
     for (std::string line; std::getline(file, line);) {

@@ -2,10 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "arguments/design_arguments.hpp"
 #include "dermis/version.hpp"
 #include "report/json_text.hpp"
 #include "report/role_text.hpp"
@@ -15,10 +13,6 @@ namespace dermis::program {
 namespace {
 
 using nlohmann::json;
-
-std::string_view name_of(Method method) {
-  return method == Method::exact ? "exact" : method == Method::disc ? "disc" : "separable";
-}
 
 json json_of(const DeviceInfo& device) {
   return {{"name", device.name},
@@ -42,16 +36,17 @@ json disc_of(const Options& options) {
 }
 
 json design_of(const MaterialReport& material) {
-  if (!material.design) return nullptr;
-  const TapsDesign& design = *material.design;
-  return {{"model", program::name_of(design.model)},
+  if (!material.taps) return nullptr;
+  const auto& [design, count, predicted_rel_l2] = *material.taps;
+  const bool is_seen = material.pixel_mm.has_value();
+  return {{"model", name_of(design.model)},
           {"rank", design.rank},
-          {"taps", material.taps ? json(*material.taps) : json(nullptr)},
+          {"taps", is_seen ? json(count) : json(nullptr)},
           {"most_taps", design.count},
-          {"placement", program::name_of(design.placement)},
+          {"placement", name_of(design.placement)},
           {"guide", design.model == Model::guided ? json(design.guide) : json(nullptr)},
           {"non_negative", design.non_negative},
-          {"predicted_rel_l2", or_null(material.predicted_rel_l2)}};
+          {"predicted_rel_l2", is_seen ? json(predicted_rel_l2) : json(nullptr)}};
 }
 
 json json_of(const MaterialReport& material) {
@@ -75,18 +70,22 @@ std::string text_of(const MaterialReport& material) {
   std::string text =
       fmt::format("material {:<2} {}, {} pixels, radius {:.3g} mm\n", material.id ? std::to_string(*material.id) : "",
                   material.profile, material.pixels, material.radius_mm);
-  if (material.design) {
-    const TapsDesign& design = *material.design;
-    text += fmt::format("            {} rank {}, {}{} taps, placement {}", program::name_of(design.model), design.rank,
-                        design.tolerance > 0 ? "up to " : "", design.count, program::name_of(design.placement));
-    if (design.model == Model::guided) text += fmt::format(", guide {}", design.guide);
-    if (design.non_negative) text += ", not negative";
-    text += '\n';
-  }
-  if (material.predicted_rel_l2)
-    text += fmt::format("            {} taps, predicted error {:.3g} % for pixels of {:.3g} mm\n", *material.taps,
-                        100 * *material.predicted_rel_l2, *material.pixel_mm);
+  if (!material.taps) return text;
+  const auto& [design, count, predicted_rel_l2] = *material.taps;
+  text += fmt::format("            {} rank {}, {}{} taps, placement {}", name_of(design.model), design.rank,
+                      design.tolerance > 0 ? "up to " : "", design.count, name_of(design.placement));
+  if (design.model == Model::guided) text += fmt::format(", guide {}", design.guide);
+  if (design.non_negative) text += ", not negative";
+  text += '\n';
+  if (material.pixel_mm)
+    text += fmt::format("            {} taps, predicted error {:.3g} % for pixels of {:.3g} mm\n", count,
+                        100 * predicted_rel_l2, *material.pixel_mm);
   return text;
+}
+
+/// The tolerance that was asked for, or that of the quality; 0 if neither was, or the reference.
+double tolerance_of(const Options& asked) {
+  return asked.quality ? dermis::tolerance_of(*asked.quality) : asked.tolerance;
 }
 
 double percent(std::int64_t part, std::int64_t whole) {
@@ -133,15 +132,14 @@ std::string text_of(const StatsReport& report) {
                         disc.tangent_plane ? "tangent" : "screen", disc.prefiltered ? "prefiltered, " : "",
                         disc.accumulate, options.seed);
   }
-  if (!report.quality.empty()) text += fmt::format(", quality {}", report.quality);
-  if (report.tolerance) text += fmt::format(", tolerance {}", *report.tolerance);
+  if (report.asked.quality) text += fmt::format(", quality {}", name_of(*report.asked.quality));
+  if (const double tolerance = tolerance_of(report.asked); tolerance > 0)
+    text += fmt::format(", tolerance {}", tolerance);
   text += '\n';
   for (const MaterialReport& material : report.materials) text += text_of(material);
   const auto tiles = static_cast<std::int64_t>(stats.tiles.kinds.size());
   text += fmt::format("tiles       {}\n", tiles);
-  for (int kind = 0; kind < tile_kinds; ++kind) {
-    text += counted(name_of(static_cast<TileKind>(kind)), stats.count(static_cast<TileKind>(kind)), tiles);
-  }
+  for (const auto& [kind, name] : word_table<TileKind>) text += counted(in_words(name), stats.count(kind), tiles);
   text += fmt::format("pixels      {}\n", stats.pixels);
   text += counted("scattered", stats.pixels_scattered, stats.pixels);
   text += counted("without material", stats.pixels_without_material, stats.pixels);
@@ -157,11 +155,12 @@ std::string text_of(const StatsReport& report) {
 
 std::string json_text_of(const StatsReport& report) {
   const Stats& stats = report.stats;
+  const double tolerance = tolerance_of(report.asked);
   json object = {{"version", DERMIS_VERSION},
                  {"device", json_of(report.device)},
                  {"method", name_of(report.options.method)},
-                 {"quality", report.quality.empty() ? json(nullptr) : json(report.quality)},
-                 {"tolerance", or_null(report.tolerance)},
+                 {"quality", report.asked.quality ? json(name_of(*report.asked.quality)) : json(nullptr)},
+                 {"tolerance", tolerance > 0 ? json(tolerance) : json(nullptr)},
                  {"sheared", report.options.sheared},
                  {"jitter", report.options.jitter},
                  {"seed", report.options.seed},
@@ -171,11 +170,7 @@ std::string json_text_of(const StatsReport& report) {
                  {"roles", json_of(report.roles)},
                  {"materials", json::array()}};
   object["tiles"] = {{"total", stats.tiles.kinds.size()}};
-  for (int kind = 0; kind < tile_kinds; ++kind) {
-    std::string name(name_of(static_cast<TileKind>(kind)));
-    std::replace(name.begin(), name.end(), ' ', '_');
-    object["tiles"][name] = stats.count(static_cast<TileKind>(kind));
-  }
+  for (const auto& [kind, name] : word_table<TileKind>) object["tiles"][std::string(name)] = stats.count(kind);
   object["pixels"] = {{"total", stats.pixels},
                       {"scattered", stats.pixels_scattered},
                       {"without_material", stats.pixels_without_material},

@@ -1,4 +1,4 @@
-/// What a run of the filter did: the table of --stats and the object of --stats-json.
+/// The table of --stats and the object of --stats-json, which tell what a run of the filter did.
 #pragma once
 
 #include <cstdint>
@@ -18,10 +18,7 @@ struct MaterialReport {
   std::int64_t pixels = 0;
   /// Size at the median depth, along the axis that has the smaller ones; none if no pixel is of the material.
   std::optional<double> pixel_mm;
-  int widest_px = TapsDesign{}.widest_px;  ///< no kernel is wider, as far as that matters
-  std::optional<TapsDesign> design;        ///< none if the method has no taps
-  std::optional<int> taps;                 ///< of the design for pixels of that size
-  std::optional<double> predicted_rel_l2;  ///< of them, TapSet::predicted_rel_l2
+  std::optional<MaterialTaps> taps;  ///< for pixels of that size; none if the method has no taps
 };
 
 /// Wall clock of the steps around the device's own, milliseconds.
@@ -35,9 +32,8 @@ struct StepTimes {
 
 struct StatsReport {
   DeviceInfo device;
-  Options options;
-  std::string quality;              ///< empty if another tolerance, a design or a method was asked for
-  std::optional<double> tolerance;  ///< if the designs were chosen by it
+  Options asked;    ///< with the quality or the tolerance that was asked for
+  Options options;  ///< as chosen
   Stats stats;
   StepTimes times;
   exr::FoundCamera camera;

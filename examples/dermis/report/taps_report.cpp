@@ -21,11 +21,12 @@ std::string header_of(const TapsReport& report) {
   };
   add("profile", report.profile);
   if (report.width_follows_albedo) add("", "the albedo of each pixel scales it; this is its width at a factor of 1");
-  add("model", report.model);
+  add("model", std::string(name_of(report.design.model)));
   add("rank", std::to_string(set.terms.size()));
-  add("taps", fmt::format("{} per pass{}", taps, taps < report.asked ? ", one on every pixel of the kernel" : ""));
-  add("placement", taps < report.asked ? "every pixel" : report.placement);
-  add("fetch", name_of(set.fetch));
+  add("taps",
+      fmt::format("{} per pass{}", taps, taps < report.design.count ? ", one on every pixel of the kernel" : ""));
+  add("placement", taps < report.design.count ? "every pixel" : std::string(name_of(report.design.placement)));
+  add("fetch", std::string(name_of(set.fetch)));
   add("pixel", fmt::format("{} mm on the surface", set.pixel_mm));
   add("loads per pixel", std::to_string(loads_per_pixel(set)));
   add("predicted error", fmt::format("{:.3g} % relative L2 on natural images", 100 * set.predicted_rel_l2));
@@ -51,8 +52,6 @@ std::string half_of(const TapSet& set, std::size_t t) {
 
 int loads_per_pixel(const TapSet& set) { return static_cast<int>((1 + set.terms.size()) * set.offsets_px.size()); }
 
-std::string name_of(Fetch fetch) { return fetch == Fetch::linear ? "linear" : "integer"; }
-
 std::string offset_text(double offset_px) {
   return offset_px == std::round(offset_px) ? fmt::format("{:.0f}", offset_px) : fmt::format("{}", offset_px);
 }
@@ -60,8 +59,8 @@ std::string offset_text(double offset_px) {
 std::string title_of(const TapsReport& report) {
   const TapSet& set = report.set;
   return fmt::format("{}: model {}, rank {}, {} taps, {} fetch, pixel {} mm, predicted error {:.3g} %", report.profile,
-                     report.model, set.terms.size(), set.offsets_px.size(), name_of(set.fetch), set.pixel_mm,
-                     100 * set.predicted_rel_l2);
+                     name_of(report.design.model), set.terms.size(), set.offsets_px.size(), name_of(set.fetch),
+                     set.pixel_mm, 100 * set.predicted_rel_l2);
 }
 
 std::string table_of(const TapsReport& report) {
@@ -76,7 +75,7 @@ std::string json_text_of(const TapsReport& report) {
   json terms = json::array();
   for (const TapTerm& term : set.terms) terms.push_back({{"scale", term.scale}, {"weights", term.weights}});
   return json_text({{"profile", report.profile},
-                    {"model", report.model},
+                    {"model", name_of(report.design.model)},
                     {"rank", set.terms.size()},
                     {"taps", set.offsets_px.size()},
                     {"fetch", name_of(set.fetch)},

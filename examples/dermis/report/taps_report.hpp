@@ -1,4 +1,4 @@
-/// What `dermis taps` tells of a set of taps: for people, as JSON, as rows.
+/// The report of `dermis taps` on a set of taps: for people, as JSON, as rows.
 #pragma once
 
 #include <string>
@@ -9,18 +9,13 @@ namespace dermis::program {
 
 struct TapsReport {
   std::string profile;  ///< as the command line has it, without folders
-  std::string model;
-  std::string placement;
-  int asked = 0;  ///< taps asked for; narrow kernels need fewer
+  TapsDesign design;
   bool width_follows_albedo = false;
   TapSet set;
 };
 
 /// Pixels read and loaded again by both passes: the horizontal one reads one image, the vertical one an image per term.
 int loads_per_pixel(const TapSet& set);
-
-/// "integer" or "linear"
-std::string name_of(Fetch fetch);
 
 /// An offset as text: whole ones without a point.
 std::string offset_text(double offset_px);

@@ -177,9 +177,15 @@ std::string hlsl_source(const TapsReport& report) {
 
 }  // namespace
 
-std::string source_of(const TapsReport& report, std::string_view language) {
-  if (language == "glsl") return glsl_source(report);
-  if (language == "hlsl") return hlsl_source(report);
+std::string source_of(const TapsReport& report, Language language) {
+  switch (language) {
+    case Language::glsl:
+      return glsl_source(report);
+    case Language::hlsl:
+      return hlsl_source(report);
+    case Language::c:
+      break;
+  }
   return c_source(report);
 }
 

@@ -14,21 +14,20 @@ namespace dermis::program {
 namespace {
 
 struct KindLook {
-  std::string_view name;
   std::string_view colour;
   std::array<float, 3> rgb;  ///< scene-linear
 };
 
-/// In the order of TileKind. What is skipped is cold or grey, what is filtered warm; hues that are told apart by those
-/// who do not see red and green apart, too.
-constexpr std::array<KindLook, tile_kinds> looks = {{{"without material", "grey", {0.5F, 0.5F, 0.5F}},
-                                                     {"narrow", "cyan", {0, 0.8F, 0.8F}},
-                                                     {"unlit", "blue", {0, 0.1F, 1}},
-                                                     {"uniform", "green", {0, 0.5F, 0.1F}},
-                                                     {"flat", "yellow", {1, 0.8F, 0}},
-                                                     {"smooth", "orange", {1, 0.3F, 0}},
-                                                     {"curved", "red", {1, 0.05F, 0.02F}},
-                                                     {"reused", "white", {1, 1, 1}}}};
+/// The looks stand in the order of TileKind. Tiles that are skipped are cold or grey, those that are filtered are warm;
+/// people who do not see red and green apart can tell these hues apart, too.
+constexpr std::array<KindLook, word_table<TileKind>.size()> looks = {{{"grey", {0.5F, 0.5F, 0.5F}},
+                                                                      {"cyan", {0, 0.8F, 0.8F}},
+                                                                      {"blue", {0, 0.1F, 1}},
+                                                                      {"green", {0, 0.5F, 0.1F}},
+                                                                      {"yellow", {1, 0.8F, 0}},
+                                                                      {"orange", {1, 0.3F, 0}},
+                                                                      {"red", {1, 0.05F, 0.02F}},
+                                                                      {"white", {1, 1, 1}}}};
 
 const KindLook& look_of(TileKind kind) { return looks[static_cast<std::size_t>(kind)]; }
 
@@ -40,16 +39,19 @@ float brightness(const float* rgb) {
 
 }  // namespace
 
-std::string_view name_of(TileKind kind) { return look_of(kind).name; }
+std::string in_words(std::string_view name) {
+  std::string words(name);
+  std::replace(words.begin(), words.end(), '_', ' ');
+  return words;
+}
 
 std::string legend_of(const TileMap& tiles) {
   std::string text =
       fmt::format("tile map    {} tiles of {}x{} pixels\n", tiles.kinds.size(), tiles.tile_width, tiles.tile_height);
-  for (int number = 0; number < tile_kinds; ++number) {
-    const auto kind = static_cast<TileKind>(number);
+  for (const auto& [kind, name] : word_table<TileKind>) {
     const auto count = std::count(tiles.kinds.begin(), tiles.kinds.end(), kind);
     const double share = 100 * static_cast<double>(count) / static_cast<double>(tiles.kinds.size());
-    text += fmt::format("  {:<18}{:<8}{:>6}  {:5.1f} %\n", name_of(kind), look_of(kind).colour, count, share);
+    text += fmt::format("  {:<18}{:<8}{:>6}  {:5.1f} %\n", in_words(name), look_of(kind).colour, count, share);
   }
   return text;
 }

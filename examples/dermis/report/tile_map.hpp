@@ -1,4 +1,4 @@
-/// What became of the tiles of a frame, as a picture.
+/// A picture that shows what became of the tiles of a frame.
 #pragma once
 
 #include <filesystem>
@@ -10,8 +10,8 @@
 
 namespace dermis::program {
 
-/// In words.
-std::string_view name_of(TileKind kind);
+/// The word for a kind of tile with blanks.
+std::string in_words(std::string_view name);
 
 /// A line per kind: its colour, how many tiles are of it, and their share.
 std::string legend_of(const TileMap& tiles);

@@ -1,0 +1,45 @@
+#include "arguments/surface_arguments.hpp"
+
+#include "arguments/cryptomatte_argument.hpp"
+#include "arguments/help.hpp"
+#include "dermis/error.hpp"
+
+namespace dermis::program {
+
+void add_reading_groups(CLI::App& app, SurfaceArguments& arguments) {
+  {
+    const HelpGroup group(app, "Channels");
+    add_role_arguments(app, arguments.picture);
+    add_cryptomatte_argument(app, arguments.cryptomatte);
+  }
+  const HelpGroup group(app, "Camera, if position and depth do not tell it");
+  add_camera_arguments(app, arguments.picture.camera);
+}
+
+void check_surface(const SurfaceArguments& arguments) {
+  const MaterialArguments& materials = arguments.materials;
+  if (!arguments.picture.mm_per_unit)
+    throw Error(ErrorCode::usage, "--mm-per-unit", "nothing",
+                "millimetres per scene unit (no default, since it decides how far light spreads)");
+  if (materials.materials.empty() && materials.profile.empty())
+    throw Error(ErrorCode::usage, "--material", "neither it nor --profile",
+                "ID=PROFILE for the materials that scatter, or --profile PROFILE for every pixel");
+  if (!arguments.cryptomatte.empty() && materials.materials.empty())
+    throw Error(ErrorCode::usage, "--cryptomatte", arguments.cryptomatte.front() + " without --material",
+                "ID=PROFILE for its id");
+  check_translucency(arguments.translucency);
+}
+
+SurfaceRequest request_of(const SurfaceArguments& arguments) {
+  SurfaceRequest request{.picture = arguments.picture,
+                         .mm_per_unit = *arguments.picture.mm_per_unit,
+                         .profiles = {},
+                         .cryptomatte = arguments.cryptomatte,
+                         .lights = {},
+                         .translucency = arguments.translucency.options};
+  if (arguments.translucency.wanted) request.lights.emplace("--lights", arguments.translucency.lights);
+  request.profiles = parse_profiles(arguments.materials);
+  return request;
+}
+
+}  // namespace dermis::program

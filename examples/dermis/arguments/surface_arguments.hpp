@@ -1,0 +1,43 @@
+/// Surfaces of a picture and what scatters under them: what `dermis filter` and `dermis compare-methods` are told
+/// alike.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "arguments/material_arguments.hpp"
+#include "arguments/picture_arguments.hpp"
+#include "arguments/translucency_arguments.hpp"
+#include "files/lights_file.hpp"
+
+namespace dermis::program {
+
+struct SurfaceArguments {
+  PictureArguments picture;
+  MaterialArguments materials;
+  std::vector<std::string> cryptomatte;  ///< NAME=ID
+  TranslucencyArguments translucency;
+};
+
+/// The arguments, checked, with their profiles and their lights.
+struct SurfaceRequest {
+  PictureArguments picture;
+  double mm_per_unit;
+  std::vector<NamedProfile> profiles;
+  std::vector<std::string> cryptomatte;
+  std::optional<LightsFile> lights;  ///< if light is to come through
+  TranslucencyOptions translucency;
+};
+
+/// Adds the options that a picture is read by, in groups: channels, camera.
+void add_reading_groups(CLI::App& app, SurfaceArguments& arguments);
+
+/// Throws Error(usage) for what is missing or contradicts.
+void check_surface(const SurfaceArguments& arguments);
+
+/// Reads the files of the arguments, which have been checked. Throws as parse_profiles and LightsFile.
+SurfaceRequest request_of(const SurfaceArguments& arguments);
+
+}  // namespace dermis::program

@@ -1,0 +1,26 @@
+/// The request that a call of `dermis filter` makes, parsed and checked.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "arguments/filter_arguments.hpp"
+
+namespace dermis::program {
+
+struct FilterJob {
+  std::vector<PictureFiles> pictures;
+  SurfaceRequest surface;
+  Options options;  ///< with the quality or the tolerance that was asked for
+  bool sheared;     ///< in place of Options::sheared
+  bool reuse;
+  bool stats;
+  std::string compression;
+  DeviceArguments device;
+  std::string command;  ///< a command without the names of pictures and folders, for the record in the result
+};
+
+/// Throws Error(usage) for what the command line needs and lacks, and for what contradicts; and as request_of.
+FilterJob job_of(const FilterArguments& arguments);
+
+}  // namespace dermis::program

@@ -1,0 +1,53 @@
+/// The part of a picture that is read before anything is computed.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "arguments/surface_arguments.hpp"
+#include "dermis/exr.hpp"
+#include "dermis/plan.hpp"
+#include "dermis/translucency.hpp"
+#include "files/loaded_frame.hpp"
+
+namespace dermis::program {
+
+/// The images that light that comes through needs beside those of the filter, in memory as float.
+struct TranslucencyImages {
+  std::vector<float> position;   ///< XYZ
+  std::vector<float> normal;     ///< XYZ
+  std::vector<float> thickness;  ///< or empty
+};
+
+struct SurfaceInput {
+  exr::Picture picture;
+  exr::Roles roles;
+  exr::FoundCamera camera;
+  LoadedFrame loaded;
+  std::optional<TranslucencyImages> translucency;
+
+  /// A view of the images, with the camera and nothing to write.
+  Frame frame(double mm_per_unit) const;
+};
+
+/// Throws Error(input_missing), Error(input_unsupported) or Error(role_missing) for what the picture lacks.
+SurfaceInput read_surface(const std::string& path, const SurfaceRequest& request, const Options& options,
+                          bool needs_beauty);
+
+/// The pixels of a material. Sizes are along the axis that has the smaller ones; none if no pixel is of the material.
+struct MaterialPixels {
+  std::int64_t pixels = 0;
+  std::optional<double> pixel_mm;         ///< at the median depth
+  std::optional<double> finest_pixel_mm;  ///< at the nearest depth
+};
+
+/// Counts the pixels of each profile. Warns on stderr of a material that no pixel has.
+std::vector<MaterialPixels> count_pixels(const SurfaceInput& input, const SurfaceRequest& request);
+
+/// Adds the light that comes through, if it was asked for, to that of the input, which `frame` views.
+void transmit_light(const Device& device, const SurfaceRequest& request, Lighting lighting, const Frame& frame,
+                    SurfaceInput& input);
+
+}  // namespace dermis::program

@@ -1,0 +1,19 @@
+/// Text and JSON files that arguments name.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <string_view>
+
+namespace dermis::program {
+
+/// Reads a text file. Throws Error(input_missing) that names `argument` and `wanted` if there is none.
+std::string read_text(std::string_view argument, const std::string& path, std::string_view wanted);
+
+/// Reads a JSON file. Throws as read_text, and Error(input_unsupported) that names argument and file.
+nlohmann::json read_json(std::string_view argument, const std::string& path, std::string_view wanted);
+
+/// A value of a JSON file, for an error: at most 80 characters of it.
+std::string printed(const nlohmann::json& value);
+
+}  // namespace dermis::program

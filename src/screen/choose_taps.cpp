@@ -1,0 +1,120 @@
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <future>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "dermis/error.hpp"
+#include "dermis/tap_tables.hpp"
+#include "opencl/device_cache.hpp"
+#include "screen/plan_state.hpp"
+#include "taps/check_design.hpp"
+
+namespace dermis {
+
+namespace {
+
+void check_quality(const Options& options) {
+  const std::string method = "it with method " + std::string(name_of(options.method));
+  if (!(options.tolerance >= 0 && options.tolerance < 1)) {
+    throw Error(ErrorCode::usage, "tolerance", std::to_string(options.tolerance), "at least 0 and below 1");
+  }
+  if (options.quality && options.tolerance > 0) {
+    throw Error(ErrorCode::usage, "tolerance", "it with quality " + std::string(name_of(*options.quality)),
+                "one of the two");
+  }
+  if (options.method == Method::separable) return;
+  if (options.tolerance > 0) throw Error(ErrorCode::usage, "tolerance", method, "method separable");
+  const bool is_exact = options.method == Method::exact && options.quality == Quality::reference;
+  if (options.quality && !is_exact) throw Error(ErrorCode::usage, "quality", method, "method separable");
+}
+
+/// The widest kernel to place taps for, px, of few sizes: twice the radius of 99.9 %, for those of ranks 2 and 3 hold
+/// more. A kernel that is wider all the same has the taps of one half as wide.
+int widest_kernel_px(const Profile& profile, double finest_pixel_mm) {
+  constexpr unsigned least_px = 128;
+  constexpr unsigned most_px = TapsDesign{}.widest_px;
+  const double radius_px = 2 * profile.half_width(profile.widest_channel(), 0.999) / finest_pixel_mm;
+  return static_cast<int>(radius_px < most_px ? std::max(std::bit_ceil(static_cast<unsigned>(radius_px)), least_px)
+                                              : most_px);
+}
+
+/// The designs of the materials that have a tolerance and a size of pixels, by that. Returns those that miss it.
+std::vector<std::size_t> choose_designs(std::vector<Material>& materials) {
+  std::vector<std::future<DesignChoice>> choices(materials.size());
+  for (std::size_t i = 0; i < materials.size(); ++i) {
+    const Material& material = materials[i];
+    if (material.taps->tolerance > 0 && material.pixel_mm > 0)
+      choices[i] = std::async([&] { return choose_design(material.profile, *material.taps, material.pixel_mm); });
+  }
+  std::vector<std::size_t> missed;
+  for (std::size_t i = 0; i < materials.size(); ++i) {
+    if (!choices[i].valid()) continue;
+    const DesignChoice choice = choices[i].get();
+    materials[i].taps = choice.design;
+    if (choice.predicted_rel_l2 > choice.design.tolerance) missed.push_back(i);
+  }
+  return missed;
+}
+
+}  // namespace
+
+ChosenTaps choose_taps(std::vector<Material> materials, Options options) {
+  constexpr double plain_passes_will_do = 0.02;
+  check_quality(options);
+  const bool is_else_exact = options.tolerance > 0;
+  const double tolerance = options.quality ? tolerance_of(*options.quality) : options.tolerance;
+  if (options.quality == Quality::reference) options.method = Method::exact;
+  if (tolerance > 0) options.taps = design_within(tolerance, options.taps);
+  if (tolerance >= plain_passes_will_do) options.sheared = false;
+  options.quality.reset();
+  options.tolerance = 0;
+
+  for (Material& material : materials) {
+    for (const double pixel_mm : {material.pixel_mm, material.finest_pixel_mm})
+      if (pixel_mm != 0) check_pixel_mm(pixel_mm);
+    if (!material.taps) material.taps = options.taps;
+  }
+  std::vector<std::size_t> missed;
+  if (options.method == Method::separable) missed = choose_designs(materials);
+  if (is_else_exact && !missed.empty()) options.method = Method::exact;
+  for (Material& material : materials) {
+    if (material.finest_pixel_mm > 0)
+      material.taps->widest_px = widest_kernel_px(material.profile, material.finest_pixel_mm);
+    material.pixel_mm = material.finest_pixel_mm = 0;
+  }
+  return {std::move(materials), std::move(options), std::move(missed)};
+}
+
+const Options& Plan::options() const { return state_->settings.options; }
+
+MaterialTaps Plan::taps_of(std::size_t material, double pixel_mm) const {
+  constexpr double usual_radius_px = 64;
+  if (state_->settings.options.method != Method::separable) {
+    throw Error(ErrorCode::usage, "method", name_of(state_->settings.options.method),
+                "separable, for the others have no taps");
+  }
+  if (material >= state_->settings.materials.size()) {
+    throw Error(ErrorCode::usage, "material", std::to_string(material), "one of the plan, from 0");
+  }
+  const Profile& profile = state_->settings.materials[material].profile;
+  MaterialTaps result{.design = with_rank(profile, *state_->settings.materials[material].taps)};
+  result.count = result.design.count;
+  const auto taps = cache_of(state_->settings.device).taps.get({profile, result.design}, [&] {
+    return std::make_shared<const Taps>(make_taps(profile, result.design));
+  });
+  if (pixel_mm == 0) pixel_mm = taps->radius_mm / usual_radius_px;
+  if (result.design.tolerance > 0) {
+    const int level = Taps::level_index(static_cast<float>(taps->radius_mm / pixel_mm));
+    result.count = level < 0 ? 1 : 2 * static_cast<int>(taps->levels[level].offsets_px.size()) + 1;
+  }
+  TapsDesign there = result.design;
+  there.tolerance = 0;
+  there.count = std::max(result.count, 3);  // narrow kernels have fewer taps than any design
+  result.predicted_rel_l2 = make_tap_set(profile, there, pixel_mm).predicted_rel_l2;
+  return result;
+}
+
+}  // namespace dermis

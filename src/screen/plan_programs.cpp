@@ -1,0 +1,48 @@
+#include "screen/plan_programs.hpp"
+
+#include <sstream>
+
+#include "dermis/taps.hpp"
+#include "screen/frame_images.hpp"
+
+namespace dermis {
+
+namespace {
+
+/// The build options that all kernels of a plan share.
+std::string common_options(const PlanSettings& settings) {
+  std::ostringstream bounds;
+  bounds << std::scientific << " -DFLATNESS=" << Taps::flatness << "f -DSMOOTHNESS=" << Taps::smoothness
+         << "f -DMOST_STRETCH=" << Taps::most_stretch << "f -DMOST_SKEW=" << Taps::most_skew << "f";
+  return "-cl-std=CL1.2" + build_constant("MATERIALS", static_cast<int>(settings.materials.size())) +
+         image_constants(settings.frames) + build_constant("PIXEL_WIDTH", settings.has_pixel_width() ? 1 : 0) +
+         build_constant("JITTER", settings.options.jitter > 0 ? 1 : 0) +
+         build_constant("SHEARED", settings.is_sheared() ? 1 : 0) + bounds.str();
+}
+
+}  // namespace
+
+PlanPrograms plan_programs(const PlanSettings& settings, const ScatterMethod& method, int terms) {
+  const std::string options = common_options(settings);
+  const std::string by_block = options + build_constant("V", BLOCK);
+  PlanPrograms programs{{{"classify/classify.cl"}, by_block}, {}, {{"classify/fingerprint.cl"}, by_block}};
+  programs.method.files = {"frame/finish.cl"};
+  for (const std::string& file : method.kernel_files()) programs.method.files.push_back(file);
+  programs.method.options = options + build_constant("V", method.vector_width()) +
+                            build_constant("LIT", settings.options.lighting == Lighting::lit ? 1 : 0) +
+                            method.build_constants(terms);
+  // Every program costs PoCL 25 ms from its cache on disk, and 200 ms without, for headers and the library of built-in
+  // functions: all kernels are in one if they have vectors of the same width.
+  if (method.vector_width() == BLOCK) {
+    programs.method.files.emplace_back("classify/classify.cl");
+    programs.classification = programs.method;
+  }
+  return programs;
+}
+
+PlanPrograms plan_programs(const PlanSettings& settings) {
+  const auto method = make_scatter_method(settings);
+  return plan_programs(settings, *method, method->most_terms());
+}
+
+}  // namespace dermis

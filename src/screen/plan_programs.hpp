@@ -1,0 +1,21 @@
+// The programs of a plan.
+#pragma once
+
+#include "opencl/program.hpp"
+#include "screen/scatter_method.hpp"
+
+namespace dermis {
+
+struct PlanPrograms {
+  ProgramSource classification;
+  ProgramSource method;       ///< the same as that of classification if both have vectors of one width
+  ProgramSource fingerprint;  ///< built for a sequence whose frames are compared
+};
+
+/// The sources of the programs of a plan whose materials have so many terms.
+PlanPrograms plan_programs(const PlanSettings& settings, const ScatterMethod& method, int terms);
+
+/// The sources of the programs of a plan that is not made.
+PlanPrograms plan_programs(const PlanSettings& settings);
+
+}  // namespace dermis

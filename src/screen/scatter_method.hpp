@@ -1,0 +1,66 @@
+// One way to scatter the light of a frame, as a plan holds it.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "opencl/opencl.hpp"
+#include "screen/frame_size.hpp"
+#include "screen/material_tables.hpp"
+#include "screen/plan_settings.hpp"
+
+namespace dermis {
+
+class FrameRun;
+
+/// A method has its own kernels, tables, device memory and steps. It fills FrameRun::deferred() with the light after
+/// scattering, of which the run makes the outputs; a method that works by tiles may write them itself.
+class ScatterMethod {
+ public:
+  explicit ScatterMethod(const PlanSettings& settings) : settings_(settings) {}
+  virtual ~ScatterMethod() = default;
+  ScatterMethod(const ScatterMethod&) = delete;
+  ScatterMethod& operator=(const ScatterMethod&) = delete;
+
+  /// The taps of a material, by which its blocks are classified.
+  virtual TapsDesign design_of(const Material& material) const;
+  /// The most terms that a material has.
+  int most_terms() const;
+
+  /// Lanes that the kernels are built for.
+  virtual int vector_width() const;
+  virtual std::vector<std::string> kernel_files() const = 0;
+  /// Build constants beside those of every plan; `terms` is the number that every material has.
+  virtual std::string build_constants(int terms) const = 0;
+
+  /// Uploads the tables that only this method reads. Called once, before all that follow.
+  virtual void upload(const cl::Context& context, const MaterialTables& tables) = 0;
+
+  /// Bytes of the buffers that a run needs of its own: they become RunMemory::method, in this order.
+  virtual std::vector<std::size_t> buffer_bytes(const FrameSize& frame) const = 0;
+
+  /// Launches what comes between classification and the first step.
+  virtual void prepare(FrameRun& run) const = 0;
+  virtual int steps(int height) const;
+  virtual void scatter(FrameRun& run, int step) const = 0;
+  /// Launches what makes the outputs, unless they are written.
+  virtual void finish(FrameRun& run) const;
+
+  /// Whether tiles are filtered one by one: then a run may take tiles from the frame before.
+  virtual bool by_tiles() const { return false; }
+  /// Adds what only this method counts. Blocks.
+  virtual void add_to(Stats&, const FrameRun&) const {}
+
+ protected:
+  const PlanSettings& settings_;  ///< of the plan that holds the method
+};
+
+/// The method that the options ask for, on the device. It refers to the settings.
+std::unique_ptr<ScatterMethod> make_scatter_method(const PlanSettings& settings);
+
+/// The steps of a method that takes long, of some rows each.
+inline constexpr int rows_per_step_px = 16;
+
+}  // namespace dermis

@@ -1,0 +1,28 @@
+// The tables that both ways to run the separable passes read: kernels/separable.
+#pragma once
+
+#include <string>
+
+#include "screen/frame_run.hpp"
+#include "screen/scatter_method.hpp"
+
+namespace dermis {
+
+class SeparableMethod : public ScatterMethod {
+ public:
+  using ScatterMethod::ScatterMethod;
+
+  std::string build_constants(int terms) const override;
+  void upload(const cl::Context& context, const MaterialTables& tables) override;
+
+ protected:
+  /// The axes of rotated taps for the camera of a frame; some buffer if taps are not rotated.
+  cl::Buffer rotations(const FrameRun& run) const;
+
+  int terms_ = 1;        ///< images of light between the passes
+  int farthest_px_ = 0;  ///< no tap is farther from its pixel along a pass
+  params::TapTables taps_at_{};
+  cl::Buffer taps_;
+};
+
+}  // namespace dermis
