@@ -17,8 +17,9 @@ int main() try {
                                .camera = dermis::Camera::perspective(400, 400, width / 2.0, height / 2.0),
                                .mm_per_unit = 1,
                                .scattered = {.host = scattered.data()}};
-  const dermis::Plan plan(dermis::Device::open(), {{.profile = dermis::preset("skin").profile}},
-                          dermis::FrameDescription::of(frame));
+  // A pixel spans 0.25 mm of the wall, which decides how many taps the quality takes.
+  const dermis::Plan plan(dermis::Device::open(), {{.profile = dermis::preset("skin").profile, .pixel_mm = 0.25}},
+                          dermis::FrameDescription::of(frame), {.quality = dermis::Quality::final});
   plan.run(frame);
 
   const int centre = 3 * (width * (height / 2) + width / 2);

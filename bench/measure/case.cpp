@@ -6,22 +6,6 @@ namespace dermis::bench {
 
 namespace {
 
-// In the order of the enumerations.
-constexpr std::string_view family_names[] = {
-    "dermis",    "dermis-exact", "dermis-disc", "texture-gaussians", "texture-recursive", "naive",
-    "rule-2012", "simd",         "simd-depth",  "opencv-separable",  "opencv-bilateral",  "fft",
-    "start-up"};
-constexpr std::string_view group_titles[] = {"methods",
-                                             "coverage",
-                                             "kernel width",
-                                             "pixels",
-                                             "threads and memory",
-                                             "flat, against exact convolution",
-                                             "texture space, against exact convolution",
-                                             "start-up",
-                                             "picture"};
-constexpr std::string_view model_names[] = {"pre-integrated", "artist", "guided", "svd", "gaussians", "optimised"};
-
 bool has_taps(Family family) {
   return family == Family::dermis || family == Family::naive || family == Family::rule_2012 || family == Family::simd ||
          family == Family::simd_depth;
@@ -54,14 +38,10 @@ std::string name_on_picture(const Case& what) {
 
 }  // namespace
 
-std::string_view name_of(Family family) { return family_names[static_cast<std::size_t>(family)]; }
-
-std::string_view title_of(Group group) { return group_titles[static_cast<std::size_t>(group)]; }
-
 std::string Case::model() const {
   switch (family) {
     case Family::dermis:
-      return std::string(model_names[static_cast<std::size_t>(design.model)]);
+      return std::string(name_of(design.model));
     case Family::naive:
       return "importance";
     case Family::rule_2012:

@@ -1,12 +1,12 @@
 // A case: one way of filtering one scene.
 #pragma once
 
+#include <array>
 #include <string>
-#include <string_view>
-#include <vector>
 
 #include "dermis/plan.hpp"
 #include "dermis/taps.hpp"
+#include "dermis/words.hpp"
 #include "measure/scene.hpp"
 
 namespace dermis::bench {
@@ -28,17 +28,47 @@ enum class Family {
   start_up,           ///< the first plan of a process
 };
 
-std::string_view name_of(Family family);
-
-/// How the images of a caller lie in memory.
+/// The layout of a caller's images in memory.
 enum class Memory { planar_f32, interleaved_f16 };
 
 /// The part of the table that a case stands in.
 enum class Group { methods, coverage, width, pixels, threads, flat, texture, start_up, picture };
-inline constexpr Group all_groups[] = {Group::methods, Group::coverage, Group::width,    Group::pixels, Group::threads,
-                                       Group::flat,    Group::texture,  Group::start_up, Group::picture};
 
-std::string_view title_of(Group group);
+}  // namespace dermis::bench
+
+namespace dermis {
+
+template <>
+inline constexpr std::array<Named<bench::Family>, 13> word_table<bench::Family> = {
+    {{bench::Family::dermis, "dermis"},
+     {bench::Family::dermis_exact, "dermis-exact"},
+     {bench::Family::dermis_disc, "dermis-disc"},
+     {bench::Family::texture_gaussians, "texture-gaussians"},
+     {bench::Family::texture_recursive, "texture-recursive"},
+     {bench::Family::naive, "naive"},
+     {bench::Family::rule_2012, "rule-2012"},
+     {bench::Family::simd, "simd"},
+     {bench::Family::simd_depth, "simd-depth"},
+     {bench::Family::opencv_separable, "opencv-separable"},
+     {bench::Family::opencv_bilateral, "opencv-bilateral"},
+     {bench::Family::fft, "fft"},
+     {bench::Family::start_up, "start-up"}}};
+
+template <>
+inline constexpr std::array<Named<bench::Group>, 9> word_table<bench::Group> = {
+    {{bench::Group::methods, "methods"},
+     {bench::Group::coverage, "coverage"},
+     {bench::Group::width, "kernel width"},
+     {bench::Group::pixels, "pixels"},
+     {bench::Group::threads, "threads and memory"},
+     {bench::Group::flat, "flat, against exact convolution"},
+     {bench::Group::texture, "texture space, against exact convolution"},
+     {bench::Group::start_up, "start-up"},
+     {bench::Group::picture, "picture"}}};
+
+}  // namespace dermis
+
+namespace dermis::bench {
 
 struct Case {
   Family family = Family::dermis;
@@ -58,7 +88,7 @@ struct Case {
   std::string method() const;  ///< the name up to the scene
   /// "dermis/optimised/r2/t17/spheres/1920x1080/w16/c100"; on a picture "optimised, rank 2, 17 taps".
   std::string name() const;
-  /// On a picture: the name of the curve that the case belongs to in a plot; empty if it is in none.
+  /// The curve that a case on a picture belongs to in a plot; empty if it is in none.
   std::string series() const;
 };
 

@@ -72,7 +72,7 @@ Truth exact_convolution(const Scene& scene) {
   const int width = scene.spec.width;
   const int height = scene.spec.height;
   const int reach_px = static_cast<int>(std::ceil(kernel_reach * scene.spec.kernel_px));
-  // In a small frame the edge is in reach; there the middle third has to do.
+  // A small frame's edge is in reach everywhere; then the middle third has to do.
   const int margin = std::min(reach_px, std::min(width, height) / 3);
   Truth truth = {.source = fmt::format("exact convolution, {} px from the edge", margin), .pixels = {}};
   for (int y = margin; y < height - margin; ++y) {

@@ -1,8 +1,5 @@
 #include "measure/frame_copy.hpp"
 
-#include <algorithm>
-#include <new>
-
 #include "support/parallel.hpp"
 
 #if defined(__x86_64__)
@@ -13,8 +10,7 @@ namespace dermis::bench {
 
 namespace {
 
-constexpr std::align_val_t line{64};
-constexpr std::size_t block = 4096;  ///< floats: a page of 4 KiB from each plane, four times
+constexpr std::size_t block = 4096;  // floats: four pages of 4 KiB
 
 /// The depth is added to the first plane, so that it is read.
 void copy_plainly(const float* from, float* to, std::size_t stride, std::size_t begin, std::size_t end) {
@@ -45,22 +41,14 @@ bool has_avx() { return false; }
 
 }  // namespace
 
-void FrameCopy::Release::operator()(float* memory) const { ::operator delete[](memory, line); }
-
-FrameCopy::Planes FrameCopy::planes(std::size_t floats) {
-  Planes memory(static_cast<float*>(::operator new[](floats * sizeof(float), line)));
-  std::fill_n(memory.get(), floats, 1.0F);
-  return memory;
-}
-
 FrameCopy::FrameCopy(std::size_t pixels)
-    : stride_((pixels + block - 1) / block * block), from_(planes(4 * stride_)), to_(planes(3 * stride_)) {}
+    : stride_((pixels + block - 1) / block * block), from_(4 * stride_, 1.0F), to_(3 * stride_, 1.0F) {}
 
 void FrameCopy::run() {
   static const auto copy = has_avx() ? copy_past_caches : copy_plainly;
   const std::size_t blocks = stride_ / block;
   on_all_cores([&](std::size_t worker, std::size_t workers) {
-    copy(from_.get(), to_.get(), stride_, blocks * worker / workers * block, blocks * (worker + 1) / workers * block);
+    copy(from_.data(), to_.data(), stride_, blocks * worker / workers * block, blocks * (worker + 1) / workers * block);
   });
 }
 

@@ -2,7 +2,8 @@
 #pragma once
 
 #include <cstddef>
-#include <memory>
+
+#include "measure/aligned_floats.hpp"
 
 namespace dermis::bench {
 
@@ -14,14 +15,8 @@ class FrameCopy {
   void run();
 
  private:
-  struct Release {
-    void operator()(float* memory) const;
-  };
-  using Planes = std::unique_ptr<float[], Release>;
-  static Planes planes(std::size_t floats);
-
   std::size_t stride_;  ///< floats from plane to plane
-  Planes from_, to_;
+  AlignedFloats from_, to_;
 };
 
 }  // namespace dermis::bench

@@ -13,15 +13,15 @@
 
 namespace dermis::bench {
 
-/// How long to measure, and on what.
+/// The device, the picture if there is one, and the time to spend.
 struct Setup {
-  std::string device;            ///< as for Device::open
-  int threads = 0;               ///< of cases that do not name their own; 0: all
-  std::optional<Scene> picture;  ///< for cases on a picture
-  int rounds = 7;                ///< least runs of a case
-  double min_ms = 300;           ///< least time of all runs of a case
-  double enough_ms = 1500;       ///< a case whose runs take so long together has no more, whatever `rounds` says
-  unsigned seed = 1;             ///< of the order within a round
+  std::string device;                 ///< as for Device::open
+  int threads = 0;                    ///< of cases that do not name their own; 0: all
+  std::optional<Scene> picture = {};  ///< for cases on a picture
+  int rounds = 7;                     ///< least runs of a case
+  double min_ms = 300;                ///< least time of all runs of a case
+  double enough_ms = 1500;            ///< a case whose runs take so long together has no more, whatever `rounds` says
+  unsigned seed = 1;                  ///< of the order within a round
 };
 
 /// The results of one case. Times are of the wall clock.

@@ -20,11 +20,11 @@ std::vector<Case> all_cases();
 /// discs.
 std::vector<Case> picture_cases();
 
-/// What the cases on a picture are seen beside, in every table: first the exact method, whose result is their truth,
-/// then the rule of 2012.
+/// The cases that stand beside all others on a picture: first the exact method, whose result is their truth, then the
+/// rule of 2012.
 std::vector<Case> picture_references();
 
-/// Those of `cases` whose name has a match of the regular expression (ECMAScript); all if it is empty. Throws
+/// Keeps the cases whose name has a match of the regular expression (ECMAScript); all if it is empty. Throws
 /// Error(usage) that names --filter if it is malformed or matches nothing.
 std::vector<Case> matching(std::vector<Case> cases, const std::string& expression);
 

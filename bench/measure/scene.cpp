@@ -73,8 +73,7 @@ double slats(double s, double t) {
 
 std::string SceneSpec::name() const {
   if (geometry == Geometry::picture) return "picture";
-  return fmt::format("{}/{}x{}/w{}/c{}", geometry == Geometry::flat ? "flat" : "spheres", width, height, kernel_px,
-                     coverage_percent);
+  return fmt::format("{}/{}x{}/w{}/c{}", name_of(geometry), width, height, kernel_px, coverage_percent);
 }
 
 const Profile& skin() { return preset("skin").profile; }

@@ -1,12 +1,14 @@
 // Frames to filter, in host memory: made scenes of any size, kernel width and coverage, or a picture.
 #pragma once
 
+#include <array>
 #include <compare>
 #include <filesystem>
 #include <string>
 #include <vector>
 
 #include "dermis/plan.hpp"
+#include "dermis/words.hpp"
 
 namespace dermis::bench {
 
@@ -15,6 +17,18 @@ enum class Geometry {
   flat,     ///< a plane parallel to the screen, orthographic
   picture,  ///< read from a file
 };
+
+}  // namespace dermis::bench
+
+namespace dermis {
+
+template <>
+inline constexpr std::array<Named<bench::Geometry>, 3> word_table<bench::Geometry> = {
+    {{bench::Geometry::spheres, "spheres"}, {bench::Geometry::flat, "flat"}, {bench::Geometry::picture, "picture"}}};
+
+}  // namespace dermis
+
+namespace dermis::bench {
 
 /// Names a scene.
 struct SceneSpec {
@@ -32,7 +46,7 @@ struct SceneSpec {
 /// The preset that made scenes have.
 const Profile& skin();
 
-/// Its largest standard deviation, mm: the root of 7.41 mm^2 (GPU Gems 3, ch. 14).
+/// The largest standard deviation of "skin", mm: the root of 7.41 mm^2 (GPU Gems 3, ch. 14).
 inline constexpr double skin_width_mm = 2.7221315177632398;
 
 struct Scene {
@@ -50,7 +64,7 @@ struct Scene {
 
   std::size_t pixels() const { return depth.size(); }
   bool is_background(std::size_t pixel) const { return depth[pixel] >= 1e9F; }
-  /// Where a value lies among the floats of the light.
+  /// The index of a value among the floats of the light.
   std::size_t at(std::size_t pixel, std::size_t channel) const {
     return (pixel * layout.pixel_stride + channel * layout.channel_stride) / sizeof(float);
   }

@@ -60,7 +60,7 @@ struct Sums {
     for (std::size_t c = 0; c < 3; ++c) {
       const double wanted = truth.light[3 * place + c];
       const auto seen = static_cast<double>(result[c * plane + truth.pixels[place]]);
-      // Where light is not finite, both keep it.
+      // Both keep light that is not finite.
       if (!std::isfinite(wanted) && !std::isfinite(seen)) continue;
       const double difference = seen - wanted;
       error += difference * difference;

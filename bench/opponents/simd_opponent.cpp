@@ -1,5 +1,5 @@
-// What the processor can do: the plain rank 1 filter with constant whole offsets in C++ with vectors, both passes of a
-// strip in cache, strips shared out among all cores.
+// The plain rank 1 filter with constant whole offsets, in C++ with vectors: both passes of a strip stay in cache, and
+// all cores share the strips. It shows the speed of the processor.
 #include <algorithm>
 #include <atomic>
 #include <bit>

@@ -14,9 +14,9 @@ namespace dermis::bench {
 /// error of an even kernel depends on.
 class Pictures {
  public:
-  /// As inputs/natural_picture.hpp.
+  /// Makes natural pictures (inputs/natural_picture.hpp) of the seeds from `seed` on.
   static Pictures natural(int count, std::uint32_t seed);
-  /// One bright disc on black.
+  /// Makes one bright disc on black.
   static Pictures dot(double radius_px);
 
   /// Relative L2 distance of what the products make of the pictures from what the profile does, all channels together.

@@ -7,14 +7,15 @@
 
 namespace dermis::bench {
 
-/// For people: the machine, then one table per group of cases, and the meaning of their columns. The table of a picture
-/// is Markdown.
+/// A text for people has the machine, one table per group of cases, and the meaning of their columns. The table of a
+/// picture is Markdown.
 std::string table_of(const Measurement& measurement);
 
-/// An object with version, machine, device, picture, copy_ms by size, and rows. A value that was not measured is null.
+/// The JSON is an object with version, machine, device, picture, copy_ms by size, and rows. A value that was not
+/// measured is null.
 std::string json_of(const Measurement& measurement);
 
-/// One line per row, under the names of the JSON.
+/// The CSV has one line per row, under the names of the JSON.
 std::string csv_of(const Measurement& measurement);
 
 }  // namespace dermis::bench

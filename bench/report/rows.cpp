@@ -23,16 +23,15 @@ Json json_of(const Row& row, const std::vector<PartSize>& parts) {
   const Case& what = row.what;
   const bool is_made = !what.is_on_picture();
   const bool has_taps = !what.model().empty();
-  const char* scenes[] = {"spheres", "flat", "picture"};
   Json object = {{"name", what.name()},
-                 {"group", title_of(what.group)},
+                 {"group", name_of(what.group)},
                  {"method", name_of(what.family)},
                  {"model", or_null(has_taps, what.model())},
                  {"rank", or_null(has_taps, what.design.rank)},
                  {"taps", or_null(has_taps, what.design.count)},
                  {"samples", or_null(what.family == Family::dermis_disc, what.disc.samples)},
                  {"jitter", what.jitter},
-                 {"scene", scenes[static_cast<int>(what.scene.geometry)]},
+                 {"scene", name_of(what.scene.geometry)},
                  {"width_px", or_null(is_made, what.scene.kernel_px)},
                  {"size", {what.scene.width, what.scene.height}},
                  {"coverage", or_null(is_made, what.scene.coverage_percent)},

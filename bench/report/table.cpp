@@ -67,7 +67,7 @@ std::string group_table(Group group, const std::vector<const Row*>& rows) {
   std::size_t name_width = 0;
   for (const Row* row : rows) name_width = std::max(name_width, row->what.name().size());
   std::string text = "\n";
-  text += fmt::format(line_format, title_of(group), name_width, "loads", "ms", "p10..p90", "x copy", "GB/s", "GFLOP/s",
+  text += fmt::format(line_format, name_of(group), name_width, "loads", "ms", "p10..p90", "x copy", "GB/s", "GFLOP/s",
                       "rel L2", "max", "plan ms", "peak MB");
   for (const Row* row : rows) text += line_of(*row, name_width);
   return text;
@@ -107,7 +107,7 @@ std::string table_of(const Measurement& measurement) {
     text += fmt::format("copy of {}x{}: {:.3f} ms, {:.1f} GB/s\n", size.first, size.second, ms,
                         7.0 * sizeof(float) * size.first * size.second / (ms * 1e6));
   }
-  for (const Group group : all_groups) {
+  for (const auto& [group, name] : word_table<Group>) {
     std::vector<const Row*> rows;
     for (const Row& row : measurement.rows) {
       if (row.what.group == group) rows.push_back(&row);

@@ -1,4 +1,4 @@
-// How far a result is from the oracle.
+// The errors of a result against the oracle.
 #pragma once
 
 #include "dermis/oracle/reference.hpp"

@@ -31,7 +31,7 @@
 // its material lies far behind passes for a surface as long as that gap, and the corrections of ranks 2 and 3, which
 // are not divided by their weights, grow with it. The table shows by how much.
 //
-// Where the light is finite and its scale within 1e-30..1e30, 4e-6 stands for: two passes, in each about n + 3
+// If the light is finite and its scale within 1e-30..1e30, 4e-6 stands for: two passes, in each about n + 3
 // roundings of 6e-8 on sums of n = 17 terms, which add up like a random walk to a few 1e-7, and a factor of ten for
 // the light that the corrections of rank 2 take away again. Of constant light a mean is off by (n + 1) 6e-8 = 1.1e-6 at
 // most, as both its sums round alike but for a product; 2e-6 are two passes of that.
@@ -56,7 +56,7 @@ struct StressRow {
   double max_ulp = std::numeric_limits<double>::quiet_NaN();   ///< in units of the last place of the output's format
   double of_bound = std::numeric_limits<double>::quiet_NaN();  ///< largest error / (the oracle's bound on it)
   double energy = std::numeric_limits<double>::quiet_NaN();    ///< relative change of constant light, or of a sum
-  /// How far values leave the range of the light, in units of that range.
+  /// The distance by which values leave the range of the light, in units of that range.
   double overshoot = std::numeric_limits<double>::quiet_NaN();
   long non_finite = 0;  ///< values that came out where none went in
   std::string promised = {};

@@ -6,7 +6,7 @@
 
 namespace dermis::bench {
 
-/// How many cores this process may use.
+/// The number of cores that this process may use.
 std::size_t core_count();
 
 /// Calls work(worker, workers) once on every core and waits.

@@ -1,11 +1,13 @@
-#include "texture/texture_blur.hpp"
-
+// The method TextureMethod::gaussians, whose kernels are in texture_blur.cl.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <numbers>
 #include <span>
 #include <sstream>
+
+#include "opencl/memory_pool.hpp"
+#include "texture/texture_scatter.hpp"
 
 namespace dermis {
 
@@ -81,9 +83,45 @@ std::string chain_constants() {
   return constants.str();
 }
 
-}  // namespace
+/// Texels of its run before and after each texel, along an axis.
+struct Runs {
+  cl::Buffer before, after;
+};
 
-TextureBlur::Memory::Memory(const cl::Context& context, const TextureSizes& wanted)
+struct BlurMemory {
+  TextureSizes sizes;
+  TexturePlanes planes;
+  cl::Buffer between;  ///< after the pass along u
+  cl::Buffer last;     ///< the Gaussian before
+  cl::Buffer sum;      ///< the scattered light
+  Runs along_u, along_v;
+
+  BlurMemory(const cl::Context& context, const TextureSizes& wanted);
+};
+
+/// A chain of Gaussians, each blurred along u, then along v.
+class TextureBlur final : public TextureScatter {
+ public:
+  TextureBlur(const Device& device, const Profile& profile, const TextureDescription& images)
+      : TextureScatter(device, images, false),
+        chain_(make_gaussian_chain(profile)),
+        passes_(build_passes(device, images, "texture/texture_blur.cl", chain_constants())),
+        vector_width_(device.info().vector_width) {}
+
+  double predicted_rel_l2() const override { return chain_.predicted_rel_l2; }
+  TextureStats scatter(TextureRun& run) const override;
+
+ private:
+  void find_runs(TextureRun& run, const BlurMemory& memory) const;
+  void blur(TextureRun& run, const BlurMemory& memory) const;
+
+  GaussianChain chain_;
+  cl::Program passes_;
+  mutable MemoryPool<BlurMemory> memories_;
+  int vector_width_;
+};
+
+BlurMemory::BlurMemory(const cl::Context& context, const TextureSizes& wanted)
     : sizes(wanted), planes(context, sizes, 3, BLUR_PLANES) {
   for (cl::Buffer* floats : {&between, &last, &sum}) {
     *floats = device_buffer(context, 3 * sizes.texels() * sizeof(float));
@@ -93,15 +131,9 @@ TextureBlur::Memory::Memory(const cl::Context& context, const TextureSizes& want
   }
 }
 
-TextureBlur::TextureBlur(const Device& device, const Profile& profile, const TextureDescription& images)
-    : TextureScatter(device, images, false),
-      chain_(make_gaussian_chain(profile)),
-      passes_(build_passes(device, images, "texture/texture_blur.cl", chain_constants())),
-      vector_width_(device.info().vector_width) {}
-
 TextureStats TextureBlur::scatter(TextureRun& run) const {
-  const BorrowedMemory<Memory> borrowed(memories_, run.context(), run.queue(), run.sizes());
-  const Memory& memory = *borrowed;
+  const BorrowedMemory<BlurMemory> borrowed(memories_, run.context(), run.queue(), run.sizes());
+  const BlurMemory& memory = *borrowed;
   run.prepare(memory.planes);
   find_runs(run, memory);
   blur(run, memory);
@@ -109,7 +141,7 @@ TextureStats TextureBlur::scatter(TextureRun& run) const {
   return run.wait(memory.planes);
 }
 
-void TextureBlur::find_runs(TextureRun& run, const Memory& memory) const {
+void TextureBlur::find_runs(TextureRun& run, const BlurMemory& memory) const {
   cl::Kernel rows(passes_, "texture_runs_u");
   set_arguments(rows, run.params(), memory.planes.objects, memory.along_u.before, memory.along_u.after);
   run.launch(TextureRun::Step::prepare, rows, run.sizes().height);
@@ -118,13 +150,13 @@ void TextureBlur::find_runs(TextureRun& run, const Memory& memory) const {
   run.launch(TextureRun::Step::prepare, columns, parts_of(run.sizes().width, vector_width_));
 }
 
-void TextureBlur::blur(TextureRun& run, const Memory& memory) const {
+void TextureBlur::blur(TextureRun& run, const BlurMemory& memory) const {
   const BlurTables tables = make_blur_tables(chain_, run.mm_per_texel());
   const cl::Buffer weights = upload(run.context(), tables.weights);
   for (std::size_t k = 0; k < tables.blurs.size() / 3; ++k) {
     const cl::Buffer level = upload(run.context(), std::span(tables.blurs).subspan(3 * k, 3));
     for (const bool along_v : {false, true}) {
-      const Memory::Runs& runs = along_v ? memory.along_v : memory.along_u;
+      const Runs& runs = along_v ? memory.along_v : memory.along_u;
       cl::Kernel kernel(passes_, "texture_blur");
       set_arguments(kernel, run.params(), run.pass(along_v), level, weights, run.stretch(along_v), runs.before,
                     runs.after, memory.planes.finest, memory.planes.lit, memory.planes.light, memory.between,
@@ -133,6 +165,13 @@ void TextureBlur::blur(TextureRun& run, const Memory& memory) const {
       run.count_parts(run.sizes().blocks());
     }
   }
+}
+
+}  // namespace
+
+std::unique_ptr<const TextureScatter> make_texture_blur(const Device& device, const Profile& profile,
+                                                        const TextureDescription& images) {
+  return std::make_unique<TextureBlur>(device, profile, images);
 }
 
 }  // namespace dermis

@@ -4,8 +4,7 @@
 #include <utility>
 
 #include "opencl/device.hpp"
-#include "texture/texture_blur.hpp"
-#include "texture/texture_recursion.hpp"
+#include "texture/texture_scatter.hpp"
 
 namespace dermis {
 
@@ -30,19 +29,13 @@ void check_plan(const Profile& profile, const TextureDescription& frames, const 
   }
 }
 
-/// Throws Error(usage) if recursion cannot follow the profile.
-std::unique_ptr<const TextureScatter> make_method(TextureMethod method, const Device& device, const Profile& profile,
-                                                  const TextureDescription& frames) {
-  if (method == TextureMethod::recursive) return std::make_unique<TextureRecursion>(device, profile, frames);
-  return std::make_unique<TextureBlur>(device, profile, frames);
-}
-
 }  // namespace
 
 TexturePlan::TexturePlan(const Device& device, const Profile& profile, const TextureDescription& frames,
                          const TextureOptions& options) {
   check_plan(profile, frames, options);
-  auto method = with_device_errors([&] { return make_method(options.method, device, profile, frames); });
+  const auto make = options.method == TextureMethod::recursive ? make_texture_recursion : make_texture_blur;
+  auto method = with_device_errors([&] { return make(device, profile, frames); });
   state_ = std::make_unique<const State>(State{device, frames, options, std::move(method)});
 }
 

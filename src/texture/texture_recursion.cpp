@@ -1,9 +1,11 @@
-#include "texture/texture_recursion.hpp"
-
+// The method TextureMethod::recursive, whose kernels are in recursion.cl.
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <span>
+
+#include "opencl/memory_pool.hpp"
+#include "texture/texture_scatter.hpp"
 
 namespace dermis {
 
@@ -53,22 +55,39 @@ std::array<params::PoleParams, 2> make_pole_tables(const Recursion& recursion, d
   return tables;
 }
 
-}  // namespace
+struct RecursionMemory {
+  TextureSizes sizes;
+  TexturePlanes planes;  ///< the scattered light takes the place of the light
+  cl::Buffer between;    ///< after the pass along u: main function and correction of each texel, four floats each
 
-TextureRecursion::Memory::Memory(const cl::Context& context, const TextureSizes& wanted)
-    : sizes(wanted),
-      planes(context, sizes, 4, 1),
-      between(device_buffer(context, 8 * sizes.texels() * sizeof(float))) {}
+  RecursionMemory(const cl::Context& context, const TextureSizes& wanted)
+      : sizes(wanted),
+        planes(context, sizes, 4, 1),
+        between(device_buffer(context, 8 * sizes.texels() * sizeof(float))) {}
+};
 
-TextureRecursion::TextureRecursion(const Device& device, const Profile& profile, const TextureDescription& images)
-    : TextureScatter(device, images, true),
-      recursion_(make_recursion(profile)),
-      passes_(build_passes(device, images, "texture/recursion.cl", "")),
-      lines_per_item_(device.info().type == "GPU" ? 1 : 8) {}
+/// Poles that run along rows, then along columns.
+class TextureRecursion final : public TextureScatter {
+ public:
+  TextureRecursion(const Device& device, const Profile& profile, const TextureDescription& images)
+      : TextureScatter(device, images, true),
+        recursion_(make_recursion(profile)),
+        passes_(build_passes(device, images, "texture/recursion.cl", "")),
+        lines_per_item_(device.info().type == "GPU" ? 1 : 8) {}
+
+  double predicted_rel_l2() const override { return recursion_.predicted_rel_l2; }
+  TextureStats scatter(TextureRun& run) const override;
+
+ private:
+  Recursion recursion_;
+  cl::Program passes_;
+  mutable MemoryPool<RecursionMemory> memories_;
+  int lines_per_item_;
+};
 
 TextureStats TextureRecursion::scatter(TextureRun& run) const {
-  const BorrowedMemory<Memory> borrowed(memories_, run.context(), run.queue(), run.sizes());
-  const Memory& memory = *borrowed;
+  const BorrowedMemory<RecursionMemory> borrowed(memories_, run.context(), run.queue(), run.sizes());
+  const RecursionMemory& memory = *borrowed;
   run.prepare(memory.planes);
   const std::array<params::PoleParams, 2> tables = make_pole_tables(recursion_, run.mm_per_texel());
   for (const bool along_v : {false, true}) {
@@ -85,6 +104,13 @@ TextureStats TextureRecursion::scatter(TextureRun& run) const {
   }
   run.finish(memory.planes.light);
   return run.wait(memory.planes);
+}
+
+}  // namespace
+
+std::unique_ptr<const TextureScatter> make_texture_recursion(const Device& device, const Profile& profile,
+                                                             const TextureDescription& images) {
+  return std::make_unique<TextureRecursion>(device, profile, images);
 }
 
 }  // namespace dermis

@@ -1,6 +1,7 @@
-// A method that scatters light in textures.
+// The methods that scatter light in textures.
 #pragma once
 
+#include <memory>
 #include <string>
 
 #include "dermis/texture.hpp"
@@ -35,5 +36,12 @@ class TextureScatter {
  private:
   cl::Program image_program_;
 };
+
+/// The methods, each in a file of its name. Both throw Error(device) if the device refuses the kernels, the second one
+/// Error(usage) if recursion cannot follow the profile.
+std::unique_ptr<const TextureScatter> make_texture_blur(const Device& device, const Profile& profile,
+                                                        const TextureDescription& images);
+std::unique_ptr<const TextureScatter> make_texture_recursion(const Device& device, const Profile& profile,
+                                                             const TextureDescription& images);
 
 }  // namespace dermis

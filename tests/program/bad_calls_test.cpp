@@ -40,7 +40,7 @@ class GoodCall {
     CHECK_FALSE(fs::exists(output()));
   }
 
-  /// The same call on another input.
+  /// Checks that the call on another input is refused.
   void check_refuses_input(const std::string& path, int code, const Words& parts, const Words& more = {}) const {
     Words arguments = with(more);
     arguments[1] = path;

@@ -153,7 +153,7 @@ TEST_CASE("every model of every rank spreads light, and leaves constant light as
     CHECK(stats["materials"][0]["design"]["rank"] == c.rank);
     CHECK(stats["materials"][0]["design"]["taps"] == 13);
     const std::string output = folder / (name + ".exr");
-    // What spreads nothing is at 1 of it; the worst of these, 13 uniform taps, at 0.43.
+    // A filter that spreads nothing is at 1 of it; the worst of these, 13 uniform taps, at 0.43.
     CHECK(distance(output, "ViewLayer.sss.", folder / "exact.exr", "ViewLayer.sss.") < 0.5 * unfiltered);
     // A pass sums 13 weights and 13 products and divides: (2 * 13 + 1) 2^-24 of the light. There are two, of up to
     // 6 terms whose scales sum to 1; where they change their sign, their absolute values sum to less than 4.

@@ -48,7 +48,7 @@ std::vector<float> column(const json& term, std::size_t channel) {
   return values;
 }
 
-/// In float32, in an order by chance.
+/// Sums in float32, in an order by chance.
 float shuffled_sum(std::vector<float> values, Random& random) {
   for (std::size_t i = values.size(); i > 1; --i)
     std::swap(values[i - 1], values[static_cast<std::size_t>(random.integer(0, static_cast<int>(i) - 1))]);
@@ -57,7 +57,7 @@ float shuffled_sum(std::vector<float> values, Random& random) {
   return sum;
 }
 
-/// What every set of taps is like.
+/// Checks what holds for every set of taps.
 void check_taps(const json& set, Random& random) {
   Words keys;
   for (const auto& [key, value] : set.items()) keys.push_back(key);

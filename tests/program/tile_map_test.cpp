@@ -24,7 +24,7 @@ namespace {
 
 const std::array names = {"without material", "narrow", "unlit", "uniform", "flat", "smooth", "curved", "reused"};
 
-/// What the legend says of one kind.
+/// The line of the legend for one kind.
 struct LegendLine {
   std::string colour;
   int tiles = 0;

@@ -1,4 +1,4 @@
-/// What becomes of pixels that are not finite: --bad-pixels.
+/// --bad-pixels says what becomes of pixels that are not finite.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -11,8 +11,8 @@ namespace dermis::program {
 
 void add_cryptomatte_argument(CLI::App& app, std::vector<std::string>& arguments);
 
-/// What the arguments NAME=ID say of each pixel: its id, 0 or another that is not named where there is none, and the
-/// share that it covers. Throws Error(usage) for what is malformed, and as exr::load_cryptomatte.
+/// The arguments NAME=ID give each pixel two values: its id, 0 or another that is not named where there is none, and
+/// the share that it covers. Throws Error(usage) for what is malformed, and as exr::load_cryptomatte.
 struct NamedMattes {
   std::vector<float> ids, shares;
 };

@@ -19,7 +19,7 @@ constexpr int most_taps = 2047;
 
 using Words = std::vector<std::pair<std::string_view, int>>;
 
-/// What stands for "auto" and "dense", where they may be said.
+/// The words that an option takes in place of a number, and the numbers that stand for them.
 Words words_for_counts(bool or_dense, bool or_auto) {
   Words words;
   if (or_dense) words.emplace_back("dense", DesignArguments::dense);

@@ -1,4 +1,4 @@
-/// Which taps to make, on the command line.
+/// The options that say which taps to make.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -10,7 +10,7 @@
 
 namespace dermis::program {
 
-/// What was not given is as in `defaults`; but the rank is 1 if the model knows no other.
+/// An option that was not given is as in `defaults`, but the rank is 1 if the model knows no other.
 struct DesignArguments {
   static constexpr int automatic = 0;
   static constexpr int dense = -1;

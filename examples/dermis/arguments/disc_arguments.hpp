@@ -1,4 +1,4 @@
-/// How discs are sampled, on the command line.
+/// The options that say how discs are sampled.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -9,7 +9,7 @@
 
 namespace dermis::program {
 
-/// What was not given is as in DiscOptions.
+/// An option that was not given is as in DiscOptions.
 struct DiscArguments {
   std::optional<std::string> samples;  ///< a number or "auto"
   std::optional<std::string> plane;    ///< "tangent" or "screen"

@@ -1,4 +1,4 @@
-/// How `dermis COMMAND --help` looks.
+/// The look of `dermis COMMAND --help`.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -1,4 +1,4 @@
-/// --material and --profile: which surfaces scatter, and how.
+/// --material and --profile say which surfaces scatter, and how.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -28,7 +28,7 @@ void add_material_arguments(CLI::App& app, MaterialArguments& arguments);
 /// All profiles that were asked for. Throws Error(usage) for what is malformed or given twice.
 std::vector<NamedProfile> parse_profiles(const MaterialArguments& arguments);
 
-/// The same as the filter takes them.
+/// The profiles as a Plan takes them.
 std::vector<Material> materials_of(const std::vector<NamedProfile>& profiles);
 
 /// True if they tell materials apart by their ids.

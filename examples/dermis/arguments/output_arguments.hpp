@@ -7,7 +7,7 @@
 
 namespace dermis::program {
 
-/// What becomes of one picture, or folders for several; what is empty is not asked for.
+/// The files that one picture becomes, or folders for several pictures. An empty name asks for nothing.
 struct OutputFiles {
   std::string output;
   std::string preview;

@@ -1,4 +1,4 @@
-/// The picture to read, what its channels are for, and what the caller says of the camera and the scale.
+/// The options that say what the channels of a picture are for, and what its camera and its scale are.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -26,8 +26,10 @@ void add_scale_argument(CLI::App& app, PictureArguments& arguments);
 /// Adds --fov, --focal-px and --px-per-unit.
 void add_camera_arguments(CLI::App& app, exr::CameraHint& camera);
 
-/// What was asked for, as words of a command, with a space before each.
+/// The options about the camera that were given, with a space before each.
 std::string command_text(const exr::CameraHint& camera);
+
+/// The options --role and --layer that were given, with a space before each.
 std::string text_of_roles(const PictureArguments& arguments);
 
 }  // namespace dermis::program

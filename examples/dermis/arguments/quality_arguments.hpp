@@ -1,4 +1,4 @@
-/// How good the result is to be, on the command line.
+/// The options that say how good the result is to be.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -16,7 +16,7 @@ struct QualityArguments {
   bool given() const { return quality || tolerance; }
 };
 
-/// What is meant if nothing else is asked for.
+/// The quality that is meant if nothing else is asked for.
 inline constexpr Quality default_quality = Quality::final;
 
 void add_quality_argument(CLI::App& app, QualityArguments& arguments);

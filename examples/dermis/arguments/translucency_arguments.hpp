@@ -1,4 +1,4 @@
-/// Light that comes through from behind, on the command line.
+/// The options about light that comes through from behind.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -20,7 +20,7 @@ void add_translucency_arguments(CLI::App& app, TranslucencyArguments& arguments)
 /// Throws Error(usage) for one of the options without the others that it needs.
 void check_translucency(const TranslucencyArguments& arguments);
 
-/// What was asked for, as words of a command, a blank before each; nothing if nothing was.
+/// The options that were given, with a space before each; empty if translucency was not asked for.
 std::string command_text(const TranslucencyArguments& arguments);
 
 }  // namespace dermis::program

@@ -12,6 +12,7 @@
 #include "arguments/bad_pixels_argument.hpp"
 #include "arguments/device_arguments.hpp"
 #include "arguments/help.hpp"
+#include "arguments/number_argument.hpp"
 #include "arguments/word_argument.hpp"
 #include "commands/commands.hpp"
 #include "commands/surface_input.hpp"
@@ -57,7 +58,7 @@ std::vector<oracle::SliceMaterial> slice_materials(const std::vector<Material>& 
   return slices;
 }
 
-/// What a pixel shows more of its light shows in the beauty by the albedo.
+/// The beauty gains the albedo times what the light has gained.
 MethodPicture by_rule_2012(const std::vector<Material>& materials, const Frame& frame, const LoadedFrame& loaded,
                            std::vector<float> beauty) {
   constexpr int taps = 25;

@@ -45,7 +45,8 @@ void check_quality(const FilterArguments& arguments) {
   const std::string design = first_given(arguments.design);
   const bool says_exact = arguments.method == Method::exact;
   if (quality.quality && quality.tolerance)
-    refuse("--quality", name_of(*quality.quality), command_text(QualityArguments{{}, quality.tolerance}), "one of the two");
+    refuse("--quality", name_of(*quality.quality), command_text(QualityArguments{{}, quality.tolerance}),
+           "one of the two");
   if (is_reference(arguments) && arguments.method == Method::separable)
     refuse(command_text(quality), "--method separable", "--method exact, or another quality");
   if (is_reference(arguments) && !design.empty())

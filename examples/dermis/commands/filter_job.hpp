@@ -1,4 +1,4 @@
-/// What a call of `dermis filter` asks for, parsed and checked.
+/// The request that a call of `dermis filter` makes, parsed and checked.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-/// What the pictures of one call share: a device, and a plan as long as nothing asks for another one.
+/// The pictures of one call share a device, and a plan as long as none of them asks for another one.
 #pragma once
 
 #include <optional>

@@ -33,7 +33,7 @@ struct InfoArguments {
   bool json = false;
 };
 
-/// How far a profile reaches.
+/// The distance that a profile reaches.
 struct Reach {
   std::string profile;
   double radius_mm = 0;
@@ -108,7 +108,7 @@ std::size_t bytes_of_images(const LoadedFrame& loaded) {
   return (inputs + scattered) * bytes_of(Format::f32);
 }
 
-/// What a run would need, if the roles are there and a device can tell.
+/// The memory that a run would need, if the roles are there and a device can tell.
 std::optional<Memory> find_memory(const Info& info, const std::vector<NamedProfile>& profiles) {
   try {
     const std::vector<NamedProfile> asked =

@@ -32,7 +32,7 @@ Beauty read_beauty(const std::string& path, const std::vector<std::string>& role
   return {picture.width(), picture.height(), exr::load(picture, roles, exr::Role::beauty)};
 }
 
-/// From left to right, tops aligned, black below the lower ones.
+/// Puts pictures from left to right, with their tops aligned and black below the lower ones.
 Beauty side_by_side(const std::vector<Beauty>& beauties) {
   Beauty sheet{0, 0, {}};
   for (const Beauty& beauty : beauties) {

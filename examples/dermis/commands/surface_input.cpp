@@ -11,7 +11,7 @@ namespace {
 
 using exr::Role;
 
-/// None if the pixels are nowhere, or of a size that taps cannot be made for.
+/// The size is missing if the pixels are nowhere, or of a size that taps cannot be made for.
 std::optional<double> pixel_mm_at(const std::optional<double>& depth_units, const Camera& camera, double mm_per_unit) {
   if (!depth_units) return std::nullopt;
   const double pixel_mm = finest_pixel_mm(camera, *depth_units, mm_per_unit);

@@ -1,4 +1,4 @@
-/// What is read of a picture before anything is computed.
+/// The part of a picture that is read before anything is computed.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@
 
 namespace dermis::program {
 
-/// What light that comes through is made of, beside what the filter reads, in memory as float.
+/// The images that light that comes through needs beside those of the filter, in memory as float.
 struct TranslucencyImages {
   std::vector<float> position;   ///< XYZ
   std::vector<float> normal;     ///< XYZ
@@ -43,7 +43,7 @@ struct MaterialPixels {
   std::optional<double> finest_pixel_mm;  ///< at the nearest depth
 };
 
-/// Those of each profile. Warns on stderr of a material that no pixel has.
+/// Counts the pixels of each profile. Warns on stderr of a material that no pixel has.
 std::vector<MaterialPixels> count_pixels(const SurfaceInput& input, const SurfaceRequest& request);
 
 /// Adds the light that comes through, if it was asked for, to that of the input, which `frame` views.

@@ -38,7 +38,7 @@ struct TapsArguments {
   std::string plot;
 };
 
-/// Those that were asked for. Source code without a file is printed.
+/// The files of the command line, some without a name. Source code that has no file is printed.
 std::vector<NamedFile> outputs_of(const TapsArguments& arguments) {
   std::vector<NamedFile> outputs = {
       {"--json", arguments.json}, {"--csv", arguments.csv}, {"--plot", arguments.plot}, {"--output", arguments.output}};

@@ -55,7 +55,7 @@ struct LoadedTexture {
   }
 };
 
-/// From the roles, from positions, or none if all texels are alike.
+/// Stretches come from the roles or from positions; there are none if all texels are alike.
 void load_stretch(const TextureArguments& arguments, const exr::Picture& picture, const exr::Roles& roles,
                   LoadedTexture& loaded) {
   const auto& mm_per_unit = arguments.picture.mm_per_unit;

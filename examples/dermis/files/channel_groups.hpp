@@ -30,8 +30,8 @@ SharedChannels share_channels(const exr::Picture& a, const exr::Picture& b, std:
 /// The values of a group.
 oracle::Picture values_of(const exr::Picture& picture, const ChannelGroup& group);
 
-/// How many values of a channel differ in their bits, of all or of those where `mask` (1 channel) is not 0.
-/// All of them if the formats differ.
+/// Counts the values of a channel that differ in their bits, among all or among those where `mask` (1 channel) is not
+/// 0. All of them if the formats differ.
 std::int64_t count_different_bits(const exr::Picture& a, const exr::Picture& b, const std::string& channel,
                                   const std::optional<oracle::Picture>& mask);
 

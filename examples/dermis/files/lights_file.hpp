@@ -44,10 +44,10 @@ class LightsFile {
   /// the key, the value seen and the one wanted, Error(role_missing) if a map has no depth. `argument` is named.
   LightsFile(std::string_view argument, const std::string& path);
 
-  /// With views of the maps.
+  /// The lights, with views of their maps.
   std::vector<Light> lights() const;
 
-  /// What the file says of the highlight, in options that are the defaults else.
+  /// The highlight of the file, in options that have their defaults else.
   const ShadingOptions& shading() const { return shading_; }
 
  private:

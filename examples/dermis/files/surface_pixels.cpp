@@ -8,7 +8,7 @@
 namespace dermis::program {
 namespace {
 
-/// As dermis::Frame says.
+/// Background is what dermis::Frame says it is.
 bool is_background(float depth) { return !(depth < 1e9F) || !std::isfinite(depth); }
 
 void add_depths(SurfacePixels& surface, std::vector<float>& depths) {

@@ -1,4 +1,4 @@
-/// How many pixels the materials of a picture have, and how far away they are.
+/// The number of pixels of each material of a picture, and their distance.
 #pragma once
 
 #include <array>

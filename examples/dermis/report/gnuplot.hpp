@@ -8,7 +8,7 @@
 
 namespace dermis::program {
 
-/// Of red, green and blue curves, as a script names them.
+/// The colours of red, green and blue curves, as a script names them.
 inline constexpr std::array<std::string_view, 3> channel_colours = {"#c02020", "#209020", "#2040c0"};
 
 /// A string of a gnuplot script.

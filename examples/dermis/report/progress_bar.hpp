@@ -1,4 +1,4 @@
-/// How far a long run is, on stderr.
+/// A bar on stderr that says how far a long run is.
 #pragma once
 
 #include <chrono>

@@ -1,4 +1,4 @@
-/// What a run of the filter did: the table of --stats and the object of --stats-json.
+/// The table of --stats and the object of --stats-json, which tell what a run of the filter did.
 #pragma once
 
 #include <cstdint>

@@ -18,7 +18,7 @@ double light_on_pixel(const Profile& profile, int channel, int i, int j, double 
                            (j + 0.5) * pixel_mm);
 }
 
-/// The same of the products. `i` and `j` are not beyond the taps.
+/// Light of the sum of products on the pixel (i, j), which is not beyond the taps.
 double light_of_products(const TapSet& dense, std::size_t channel, int i, int j) {
   const std::size_t middle = dense.offsets_px.size() / 2;
   double light = 0;

@@ -1,4 +1,4 @@
-/// What taps do to light, as numbers to plot.
+/// Curves that show what taps do to light.
 #pragma once
 
 #include <vector>
@@ -30,7 +30,7 @@ Slice diagonal_slice(const Profile& profile, const TapSet& dense, int most);
 /// are more.
 Curve singular_values(const Profile& profile, const TapSet& dense, int count);
 
-/// How the taps answer light of 1 on all pixels right of an edge between two pixels, at most `most` pixels of them
+/// The answer of the taps to light of 1 on all pixels right of an edge between two pixels, at most `most` of them
 /// evenly; x is the distance from the edge, mm. `exact` is Profile::edge.
 struct StepResponse {
   Curve exact;

@@ -61,7 +61,7 @@ std::string compare(std::string_view truth, std::string_view truth_name, std::st
   return fmt::format("plot {}\n", fmt::join(lines, ", "));
 }
 
-/// From the brightest pixel to a little below where the widest channel ends.
+/// The axis ranges reach from the brightest pixel to a little below where the widest channel ends.
 std::string slice_range(const Profile& profile, const Slice& slice) {
   const int widest = profile.widest_channel();
   double highest = 0;

@@ -1,4 +1,4 @@
-/// What `dermis taps` tells of a set of taps: for people, as JSON, as rows.
+/// The report of `dermis taps` on a set of taps: for people, as JSON, as rows.
 #pragma once
 
 #include <string>

@@ -18,8 +18,8 @@ struct KindLook {
   std::array<float, 3> rgb;  ///< scene-linear
 };
 
-/// In the order of TileKind. What is skipped is cold or grey, what is filtered warm; hues that are told apart by those
-/// who do not see red and green apart, too.
+/// The looks stand in the order of TileKind. Tiles that are skipped are cold or grey, those that are filtered are warm;
+/// people who do not see red and green apart can tell these hues apart, too.
 constexpr std::array<KindLook, word_table<TileKind>.size()> looks = {{{"grey", {0.5F, 0.5F, 0.5F}},
                                                                       {"cyan", {0, 0.8F, 0.8F}},
                                                                       {"blue", {0, 0.1F, 1}},

@@ -1,4 +1,4 @@
-/// What became of the tiles of a frame, as a picture.
+/// A picture that shows what became of the tiles of a frame.
 #pragma once
 
 #include <filesystem>
