@@ -91,11 +91,6 @@ void FrameRun::launch_runs(const cl::Kernel& kernel, int width, int rows) {
   launch(kernel, item_is_pixel_ ? width : 1, rows, local_size());
 }
 
-RowRange FrameRun::rows_of(int step) const {
-  const int first = step * rows_per_step_px;
-  return {first, std::min(rows_per_step_px, frame_.height - first)};
-}
-
 void FrameRun::classify() {
   using enum ImageName;
   phase_ = &events_.classify;
@@ -118,7 +113,8 @@ void FrameRun::classify() {
 
 void FrameRun::scatter(int step) {
   phase_ = &events_.scatter;
-  plan_.method->scatter(*this, step);
+  const int rows = plan_.method->rows_per_step(frame_.height);
+  plan_.method->scatter(*this, {step * rows, std::min(rows, frame_.height - step * rows)});
 }
 
 void FrameRun::finish() {

@@ -19,11 +19,6 @@ struct StepEvents {
   std::vector<cl::Event> finish;
 };
 
-/// Some rows of a frame.
-struct RowRange {
-  int first, count;
-};
-
 /// Each call puts launches on the queue, to start after those before them; none blocks unless it says so.
 class FrameRun {
  public:
@@ -33,7 +28,7 @@ class FrameRun {
 
   void classify();
   /// The number of steps that `scatter` is cut into.
-  int scatter_steps() const { return plan_.method->steps(frame_.height); }
+  int scatter_steps() const { return parts_of(frame_.height, plan_.method->rows_per_step(frame_.height)); }
   void scatter(int step);
   void finish();
 
@@ -70,8 +65,6 @@ class FrameRun {
   void launch_runs(const cl::Kernel& kernel, int width, int rows);
   int run_length(int width) const { return item_is_pixel_ ? 1 : width; }
   int local_size() const { return item_is_pixel_ ? 0 : 1; }
-  /// The rows of a step of rows_per_step_px.
-  RowRange rows_of(int step) const;
 
   /// Loads the images into window(). The method builds frame/prepare.cl.
   void load_window(const cl::Buffer& window_memory);

@@ -110,7 +110,7 @@ Plan::Plan(const Device& device, std::vector<Material> materials, const FrameDes
     auto classification = build(state->sources.classification);
     const MaterialTables tables = make_material_tables(
         device, settings.materials, [&](const Material& material) { return method.design_of(material); },
-        options.jitter, terms);
+        settings.options.jitter, terms);
     state->materials = upload(context, tables.materials);
     state->levels = upload(context, tables.levels);
     method.upload(context, tables);

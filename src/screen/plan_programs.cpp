@@ -4,6 +4,7 @@
 
 #include "dermis/taps.hpp"
 #include "screen/frame_images.hpp"
+#include "screen/scatter_methods.hpp"
 
 namespace dermis {
 
@@ -26,11 +27,11 @@ PlanPrograms plan_programs(const PlanSettings& settings, const ScatterMethod& me
   const std::string options = common_options(settings);
   const std::string by_block = options + build_constant("V", BLOCK);
   PlanPrograms programs{{{"classify/classify.cl"}, by_block}, {}, {{"classify/fingerprint.cl"}, by_block}};
-  programs.method.files = {"frame/finish.cl"};
-  for (const std::string& file : method.kernel_files()) programs.method.files.push_back(file);
+  programs.method = method.kernels(terms);
+  programs.method.files.emplace_back("frame/finish.cl");
   programs.method.options = options + build_constant("V", method.vector_width()) +
                             build_constant("LIT", settings.options.lighting == Lighting::lit ? 1 : 0) +
-                            method.build_constants(terms);
+                            programs.method.options;
   // Every program costs PoCL 25 ms from its cache on disk, and 200 ms without, for headers and the library of built-in
   // functions: all kernels are in one if they have vectors of the same width.
   if (method.vector_width() == BLOCK) {

@@ -11,7 +11,7 @@
 #include "screen/plan_programs.hpp"
 #include "screen/plan_settings.hpp"
 #include "screen/run_memory.hpp"
-#include "screen/scatter_method.hpp"
+#include "screen/scatter_methods.hpp"
 
 namespace dermis {
 

@@ -2,11 +2,10 @@
 #pragma once
 
 #include <cstddef>
-#include <memory>
-#include <string>
 #include <vector>
 
 #include "opencl/opencl.hpp"
+#include "opencl/program.hpp"
 #include "screen/frame_size.hpp"
 #include "screen/material_tables.hpp"
 #include "screen/plan_settings.hpp"
@@ -14,6 +13,11 @@
 namespace dermis {
 
 class FrameRun;
+
+/// Some rows of a frame.
+struct RowRange {
+  int first, count;
+};
 
 /// A method has its own kernels, tables, device memory and steps. It fills FrameRun::deferred() with the light after
 /// scattering, of which the run makes the outputs; a method that works by tiles may write them itself.
@@ -31,9 +35,8 @@ class ScatterMethod {
 
   /// Lanes that the kernels are built for.
   virtual int vector_width() const;
-  virtual std::vector<std::string> kernel_files() const = 0;
-  /// Build constants beside those of every plan; `terms` is the number that every material has.
-  virtual std::string build_constants(int terms) const = 0;
+  /// Kernel files, and build constants beside those of every plan. Every material has so many terms.
+  virtual ProgramSource kernels(int terms) const = 0;
 
   /// Uploads the tables that only this method reads. Called once, before all that follow.
   virtual void upload(const cl::Context& context, const MaterialTables& tables) = 0;
@@ -43,8 +46,9 @@ class ScatterMethod {
 
   /// Launches what comes between classification and the first step.
   virtual void prepare(FrameRun& run) const = 0;
-  virtual int steps(int height) const;
-  virtual void scatter(FrameRun& run, int step) const = 0;
+  /// A method that takes long scatters a frame in several steps, of so many rows each.
+  virtual int rows_per_step(int height) const { return height; }
+  virtual void scatter(FrameRun& run, RowRange rows) const = 0;
   /// Launches what makes the outputs, unless they are written.
   virtual void finish(FrameRun& run) const;
 
@@ -56,11 +60,5 @@ class ScatterMethod {
  protected:
   const PlanSettings& settings_;  ///< of the plan that holds the method
 };
-
-/// The method that the options ask for, on the device. It refers to the settings.
-std::unique_ptr<ScatterMethod> make_scatter_method(const PlanSettings& settings);
-
-/// The steps of a method that takes long, of some rows each.
-inline constexpr int rows_per_step_px = 16;
 
 }  // namespace dermis

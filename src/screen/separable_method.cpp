@@ -6,8 +6,6 @@
 #include <numbers>
 #include <vector>
 
-#include "opencl/program.hpp"
-
 namespace dermis {
 
 namespace {
@@ -32,8 +30,6 @@ class PackedTables {
 };
 
 }  // namespace
-
-std::string SeparableMethod::build_constants(int terms) const { return build_constant("TERMS", terms); }
 
 void SeparableMethod::upload(const cl::Context& context, const MaterialTables& tables) {
   terms_ = tables.terms_per_material;

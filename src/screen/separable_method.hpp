@@ -1,8 +1,6 @@
 // The tables that both ways to run the separable passes read: kernels/separable.
 #pragma once
 
-#include <string>
-
 #include "screen/frame_run.hpp"
 #include "screen/scatter_method.hpp"
 
@@ -12,7 +10,6 @@ class SeparableMethod : public ScatterMethod {
  public:
   using ScatterMethod::ScatterMethod;
 
-  std::string build_constants(int terms) const override;
   void upload(const cl::Context& context, const MaterialTables& tables) override;
 
  protected:

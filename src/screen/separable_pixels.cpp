@@ -1,5 +1,8 @@
-#include "screen/separable_pixels.hpp"
-
+// The separable passes over a window that is the frame, for devices where a work-item computes one pixel. The kernels
+// are in kernels/separable/pixel.cl.
+#include "opencl/program.hpp"
+#include "screen/scatter_methods.hpp"
+#include "screen/separable_method.hpp"
 #include "screen/window_layout.hpp"
 
 namespace dermis {
@@ -9,36 +12,48 @@ namespace {
 /// The buffers of a run: the window of the horizontal pass, and light and segments of the vertical one.
 enum Buffer { window, between, vertical_segments };
 
+class SeparablePixels final : public SeparableMethod {
+ public:
+  using SeparableMethod::SeparableMethod;
+
+  ProgramSource kernels(int terms) const override {
+    return {{"frame/prepare.cl", "separable/pixel.cl"}, build_constant("TERMS", terms)};
+  }
+
+  std::vector<std::size_t> buffer_bytes(const FrameSize& frame) const override {
+    const std::size_t plane_bytes = frame.plane() * sizeof(float);
+    return {window_bytes(frame_window(frame, settings_.has_pixel_width()).planes), 3 * terms_ * plane_bytes,
+            plane_bytes};
+  }
+
+  void prepare(FrameRun& run) const override {
+    const auto& buffers = run.memory().method;
+    run.load_window(buffers[window]);
+    cl::Kernel kernel(run.program(), "segments");
+    set_arguments(kernel, run.frame(), run.images().layouts(), run.images().buffers({ImageName::matte}), run.window(),
+                  buffers[window], buffers[vertical_segments]);
+    run.launch(kernel, run.size().width, run.size().height, 0);
+  }
+
+  void scatter(FrameRun& run, RowRange) const override {
+    const auto& buffers = run.memory().method;
+    const cl::Buffer axes = rotations(run);
+    cl::Kernel horizontal(run.program(), "scatter_x");
+    set_arguments(horizontal, run.frame(), run.window(), buffers[window], run.materials(), run.levels(), taps_at_,
+                  taps_, axes, settings_.options.seed, run.memory().passes, buffers[between]);
+    run.launch(horizontal, run.size().width, run.size().height, 0);
+    cl::Kernel vertical(run.program(), "scatter_y");
+    set_arguments(vertical, run.frame(), run.window(), buffers[window], run.materials(), run.levels(), taps_at_, taps_,
+                  axes, settings_.options.seed, run.memory().passes, buffers[between], buffers[vertical_segments],
+                  run.deferred());
+    run.launch(vertical, run.size().width, run.size().height, 0);
+  }
+};
+
 }  // namespace
 
-std::vector<std::string> SeparablePixels::kernel_files() const { return {"frame/prepare.cl", "separable/pixel.cl"}; }
-
-std::vector<std::size_t> SeparablePixels::buffer_bytes(const FrameSize& frame) const {
-  const std::size_t plane_bytes = frame.plane() * sizeof(float);
-  return {window_bytes(frame_window(frame, settings_.has_pixel_width()).planes), 3 * terms_ * plane_bytes, plane_bytes};
-}
-
-void SeparablePixels::prepare(FrameRun& run) const {
-  const auto& buffers = run.memory().method;
-  run.load_window(buffers[window]);
-  cl::Kernel kernel(run.program(), "segments");
-  set_arguments(kernel, run.frame(), run.images().layouts(), run.images().buffers({ImageName::matte}), run.window(),
-                buffers[window], buffers[vertical_segments]);
-  run.launch(kernel, run.size().width, run.size().height, 0);
-}
-
-void SeparablePixels::scatter(FrameRun& run, int) const {
-  const auto& buffers = run.memory().method;
-  const cl::Buffer axes = rotations(run);
-  cl::Kernel horizontal(run.program(), "scatter_x");
-  set_arguments(horizontal, run.frame(), run.window(), buffers[window], run.materials(), run.levels(), taps_at_, taps_,
-                axes, settings_.options.seed, run.memory().passes, buffers[between]);
-  run.launch(horizontal, run.size().width, run.size().height, 0);
-  cl::Kernel vertical(run.program(), "scatter_y");
-  set_arguments(vertical, run.frame(), run.window(), buffers[window], run.materials(), run.levels(), taps_at_, taps_,
-                axes, settings_.options.seed, run.memory().passes, buffers[between], buffers[vertical_segments],
-                run.deferred());
-  run.launch(vertical, run.size().width, run.size().height, 0);
+std::unique_ptr<ScatterMethod> make_separable_pixels(const PlanSettings& settings) {
+  return std::make_unique<SeparablePixels>(settings);
 }
 
 }  // namespace dermis
