@@ -14,8 +14,8 @@ using Spectrum = std::vector<std::complex<double>>;
 void to_frequencies(Spectrum& values, int side_px);
 void to_pixels(Spectrum& values, int side_px);
 
-/// The distance of a row or column from 0 in a square that repeats: 0..side_px / 2.
-inline int mirrored(int i, int side_px) { return std::min(i, side_px - i); }
+/// The distance of a row or column from 0 in a square of side `side` that repeats: 0..side / 2.
+inline int mirrored(int i, int side) { return std::min(i, side - i); }
 
 /// Power of a picture at the frequencies 0..side_px / 2 by 0..side_px / 2, row by row; each holds those of its mirror
 /// images, too, which a kernel that is even in x and y does not tell apart.
