@@ -33,8 +33,8 @@ struct Material {
   /// Size of a pixel on the surface, mm, at the median depth of its pixels: what taps with a tolerance are chosen for.
   /// 1e-12..1e12; 0: not known, so that a kernel radius of 64 pixels is assumed.
   double pixel_mm = 0;
-  /// Size of a pixel at the nearest depth, mm: no taps are placed for kernels that are wider there than twice their
-  /// radius, which saves time and changes no light. 0: not known.
+  /// The same at the nearest depth: no taps are placed for kernels that are wider there than twice their radius, which
+  /// saves time and changes no light. 0: not known.
   double finest_pixel_mm = 0;
 
   bool operator==(const Material&) const = default;
@@ -96,15 +96,14 @@ template <>
 inline constexpr std::array<Named<BadPixels>, 3> word_table<BadPixels> = {
     {{BadPixels::keep, "keep"}, {BadPixels::zero, "zero"}, {BadPixels::error, "error"}}};
 
-/// The choices of a plan. With a quality or a tolerance, of which there is one at most and only with the separable
+/// What a plan computes. With a quality or a tolerance, of which there is one at most and only with the separable
 /// method, every material gets as few taps as that takes: see choose_taps.
 struct Options {
   Method method = Method::separable;
   std::optional<Quality> quality = {};
   /// Predicted error to be content with, below 1, as a number; if no taps are that good, the method is exact. 0: none.
   double tolerance = 0;
-  /// The design of every material that does not have its own. A quality or a tolerance takes neither rank nor count
-  /// from it.
+  /// Of every material that does not have its own. Of these, a quality or a tolerance takes neither rank nor count.
   TapsDesign taps = {.rank = 2};
   DiscOptions disc = {};  ///< of Method::disc, which has no taps
   /// The vertical pass crosses the horizontal one at a right angle on the surface instead of on the screen: see Taps.
@@ -124,7 +123,7 @@ struct Options {
   bool operator==(const Options&) const = default;
 };
 
-/// Materials and options once a quality, a tolerance and sizes of pixels have chosen their taps.
+/// What becomes of materials and options with a quality, a tolerance or sizes of pixels.
 struct ChosenTaps {
   std::vector<Material> materials;  ///< with designs of their own, and without sizes of pixels
   Options options;                  ///< without a quality and a tolerance

@@ -52,7 +52,7 @@ template <>
 inline constexpr std::array<Named<Fetch>, 2> word_table<Fetch> = {
     {{Fetch::integer, "integer"}, {Fetch::linear, "linear"}}};
 
-/// The error that taps may have at most, as TapSet::predicted_rel_l2.
+/// How far taps may be off at most, as TapSet::predicted_rel_l2.
 enum class Quality {
   draft,      ///< 5 %
   preview,    ///< 2 %

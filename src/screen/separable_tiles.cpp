@@ -104,12 +104,13 @@ void SeparableTiles::scatter(FrameRun& run, int) const {
   using enum ImageName;
   const RunMemory& memory = run.memory();
   const params::TileParams tile = tiles(run.size());
+  const cl::Buffer axes = rotations(run);  // a kernel does not keep its arguments before it is launched
   cl::Kernel kernel(run.program(), "scatter");
   set_arguments(kernel, run.frame(), run.images().layouts(),
                 run.images().buffers({light, albedo, depth, mask, matte, beauty, scattered, result}), run.flags(),
-                run.materials(), run.levels(), taps_at_, taps_, rotations(run), settings_.options.seed,
-                memory.material_ids, memory.blocks, memory.passes, tile, worker_memory(run.size()),
-                memory.method[windows], run.changed(), run.deferred(), memory.method[kinds], memory.counters);
+                run.materials(), run.levels(), taps_at_, taps_, axes, settings_.options.seed, memory.material_ids,
+                memory.blocks, memory.passes, tile, worker_memory(run.size()), memory.method[windows], run.changed(),
+                run.deferred(), memory.method[kinds], memory.counters);
   // A device may give a thread several work-items in one go.
   constexpr int items_per_worker = 8;
   run.launch(kernel, items_per_worker * tile.workers, 1, 1);

@@ -361,7 +361,7 @@ TEST_CASE("what has no object or no light is skipped", "[texture][skipping]") {
       CHECK(stats.parts_unlit >= height / 2 - 1);
       CHECK(stats.parts_unlit < stats.parts - stats.parts_empty);
     }
-    // A light far off changes nothing but its own surroundings, though all is computed.
+    // Faint light far off makes the plan compute more parts, which must not change the other light by a bit.
     const std::vector<float> skipped = texture.scattered;
     for (int x = 0; x < width; x += 16) texture.light[texture.at(x, 155, 2)] = 1e-30F;
     texture.scatter(skin, method);

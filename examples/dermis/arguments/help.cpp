@@ -9,29 +9,37 @@ namespace {
 constexpr std::size_t line_columns = 100;
 constexpr std::size_t text_column = 30;
 
+/// The words in lines of at most 100 columns, beside or below what stands on the left; from the left edge if that is
+/// empty.
+std::string wrapped(std::string left, const std::string& text) {
+  const std::size_t indent = left.empty() ? 0 : text_column;
+  std::size_t column = left.size();
+  const auto new_line = [&] {
+    left += "\n" + std::string(indent, ' ');
+    column = indent;
+  };
+  if (indent > 0 && column >= indent) new_line();
+  left.append(indent - column, ' ');
+  column = indent;
+  std::istringstream words(text);
+  for (std::string word; words >> word;) {
+    if (column > indent && column + 1 + word.size() > line_columns) new_line();
+    if (column > indent) word.insert(0, 1, ' ');
+    left += word;
+    column += word.size();
+  }
+  return left + "\n";
+}
+
 class WrappedHelp : public CLI::Formatter {
  public:
   std::string make_option(const CLI::Option* option, bool is_positional) const override {
-    std::string text = "  " + make_option_name(option, is_positional) + make_option_opts(option);
-    std::size_t column = text.size();
-    const auto new_line = [&] {
-      text += "\n" + std::string(text_column, ' ');
-      column = text_column;
-    };
-    if (column >= text_column)
-      new_line();
-    else
-      text.append(text_column - column, ' ');
-    column = text_column;
-    std::istringstream words(make_option_desc(option));
-    for (std::string word; words >> word;) {
-      if (column > text_column && column + 1 + word.size() > line_columns) new_line();
-      if (column > text_column) word.insert(0, 1, ' ');
-      text += word;
-      column += word.size();
-    }
-    return text + "\n";
+    return wrapped("  " + make_option_name(option, is_positional) + make_option_opts(option), make_option_desc(option));
   }
+  std::string make_subcommand(const CLI::App* command) const override {
+    return wrapped("  " + command->get_name(), command->get_description());
+  }
+  std::string make_description(const CLI::App* app) const override { return wrapped({}, app->get_description()); }
 };
 
 }  // namespace

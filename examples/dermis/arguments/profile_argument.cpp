@@ -139,14 +139,14 @@ constexpr std::array kinds = {
          "                             mean free path in mm and albedo\n"},
     Kind{"gaussians:", parse_gaussians, true, "gaussians:FILE.json",
          "  gaussians:FILE.json        {\"terms\": [{\"variance_mm2\": v, \"weight\": [r, g, b]}, ...]}\n"},
-    Kind{
-        "artist:", parse_artist, false, "artist:R/G/B,R/G/B,w=W",
-        "  artist:NR/NG/NB,FR/FG/FB,w=W\n"
-        "                             a near and a far Gaussian, standard deviations in mm, W of the light in the near "
-        "one\n"},
+    Kind{"artist:", parse_artist, false, "artist:R/G/B,R/G/B,w=W",
+         "  artist:NR/NG/NB,FR/FG/FB,w=W\n"
+         "                             a near and a far Gaussian, standard deviations in mm, W of the\n"
+         "                             light in the near one\n"},
     Kind{"dipole:", parse_dipole<Profile::dipole>, false, "dipole:R/G/B,R/G/B[,eta=E]",
          "  dipole:SR/SG/SB,AR/AG/AB[,eta=E]\n"
-         "                             a medium: reduced scattering and absorption in 1/mm, refractive index (1.3)\n"},
+         "                             a medium: reduced scattering and absorption in 1/mm, and refractive\n"
+         "                             index (1.3)\n"},
     Kind{"better-dipole:", parse_dipole<Profile::better_dipole>, false, "better-dipole:R/G/B,R/G/B[,eta=E]",
          "  better-dipole:SR/SG/SB,AR/AG/AB[,eta=E]\n"
          "                             the same by d'Eon's better dipole\n"},
