@@ -132,15 +132,15 @@ TEST_CASE("qualities and sizes that cannot be", "[quality]") {
   const auto message = [](const Options& options, double pixel_mm = 0.1) {
     return failure_of([&] { choose_taps({sized("skin", pixel_mm)}, options); }).message;
   };
-  CHECK(message({.tolerance = 1}) == "tolerance: got 1.000000, want at least 0 and below 1");
-  CHECK(message({.tolerance = -0.5}) == "tolerance: got -0.500000, want at least 0 and below 1");
-  CHECK(message({.quality = Quality::draft, .tolerance = 0.1}) ==
-        "tolerance: got it with quality draft, want one of the two");
-  CHECK(message({.method = Method::disc, .quality = Quality::draft}) ==
-        "quality: got it with method disc, want method separable");
-  CHECK(message({.method = Method::exact, .tolerance = 0.1}) ==
-        "tolerance: got it with method exact, want method separable");
-  CHECK(message({.quality = Quality::draft}, 1e-13) == "pixel_mm: got 1e-13, want 1e-12..1e12 mm");
+  CHECK_THAT(message({.tolerance = 1}), Catch::Equals("tolerance: got 1.000000, want at least 0 and below 1"));
+  CHECK_THAT(message({.tolerance = -0.5}), Catch::Equals("tolerance: got -0.500000, want at least 0 and below 1"));
+  CHECK_THAT(message({.quality = Quality::draft, .tolerance = 0.1}),
+             Catch::Equals("tolerance: got it with quality draft, want one of the two"));
+  CHECK_THAT(message({.method = Method::disc, .quality = Quality::draft}),
+             Catch::Equals("quality: got it with method disc, want method separable"));
+  CHECK_THAT(message({.method = Method::exact, .tolerance = 0.1}),
+             Catch::Equals("tolerance: got it with method exact, want method separable"));
+  CHECK_THAT(message({.quality = Quality::draft}, 1e-13), Catch::Equals("pixel_mm: got 1e-13, want 1e-12..1e12 mm"));
   CHECK_NOTHROW(choose_taps({sized("skin", 0.1)}, {.method = Method::exact, .quality = Quality::reference}));
   CHECK_THROWS_WITH(choose_design(dermis::preset("skin").profile, {}, 0.1), Catch::StartsWith("tolerance: got 0"));
 }
