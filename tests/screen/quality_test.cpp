@@ -118,7 +118,7 @@ TEST_CASE("a tolerance that no taps meet takes the exact method, a quality the b
 }
 
 TEST_CASE("without a quality designs are used as they are", "[quality]") {
-  const Material material = sized("wax", 0.1);
+  const Material material = sized("wax", 1);
   const Options options{.taps = {.rank = 3, .count = 9}};
   const auto choice = choose_taps({material}, options);
   TapsDesign design = *choice.materials.front().taps;
