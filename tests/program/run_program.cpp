@@ -34,7 +34,9 @@ void redirect(int file, const char* path) {
   if (*words[1] != '\0') putenv(words[1]);
   words.erase(words.begin(), words.begin() + 4);
   words.push_back(nullptr);
-  std::exit(dermis::program::run(static_cast<int>(words.size()) - 1, words.data()));
+  const int status = dermis::program::run(static_cast<int>(words.size()) - 1, words.data());
+  std::fflush(nullptr);
+  _exit(status);  // Shared libraries would wait at their end for threads that they had before the fork.
 }
 
 /// Forks for each call, a packet of words that end with 0, and answers with the status of waitpid().
