@@ -34,9 +34,11 @@ void redirect(int file, const char* path) {
   if (*words[1] != '\0') putenv(words[1]);
   words.erase(words.begin(), words.begin() + 4);
   words.push_back(nullptr);
-  const int status = dermis::program::run(static_cast<int>(words.size()) - 1, words.data());
+  const int code = dermis::program::run(static_cast<int>(words.size()) - 1, words.data());
+  // Without exit(): a library that comes with OpenImageIO (log4cplus) starts threads when it is loaded, which a child
+  // of fork() has not, and waits for them when it is unloaded.
   std::fflush(nullptr);
-  _exit(status);  // Shared libraries would wait at their end for threads that they had before the fork.
+  _exit(code);
 }
 
 /// Forks for each call, a packet of words that end with 0, and answers with the status of waitpid().
