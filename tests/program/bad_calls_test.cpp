@@ -64,7 +64,7 @@ std::string read_file(const std::string& path) {
 
 TEST_CASE("a call without a command or with an unknown one is a usage error") {
   check_refused(run_program({}), 2, {"subcommand"});
-  check_refused(run_program({"blur"}), 2, {"command: got blur", "filter, info"});
+  check_refused(run_program({"blur"}), 2, {"command: got blur", "filter, texture"});
   check_refused(run_program({"filter"}), 2, {"file"});
   check_refused(run_program({"devices", "--nosuch"}), 2, {"--nosuch"});
 }
