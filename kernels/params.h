@@ -57,7 +57,8 @@ typedef long long Bytes;
 #define TILE_REUSED 7  // nothing within reach has changed since the frame before
 #define TILE_KINDS 8
 
-// No tap of the vertical pass lies more columns than this from its pixel, unless it is rotated: see shear in taps.hpp.
+// No tap of the vertical pass lies more columns than this from its pixel, unless it is rotated: see shear in
+// tap_tables.hpp.
 #define MOST_SIDE 32
 
 // Tap axes and discs are turned by multiples of 2 pi over this.
@@ -286,8 +287,8 @@ struct FlatWeight {
   float rgb[3];
 };
 
-// The weight of a centre tap or a pair in one term, on a smooth block: q and k of taps.hpp times the last two are added
-// to the first, k with the sign of the offset.
+// The weight of a centre tap or a pair in one term, on a smooth block: q and k of tap_tables.hpp times the last two are
+// added to the first, k with the sign of the offset.
 struct SmoothWeight {
   float rgb[3];
   float stretch[3];

@@ -337,10 +337,10 @@ kernel void classify_blocks(struct FrameParams f, struct FrameLayouts layouts, g
 }
 
 #ifndef FLATNESS
-#error "FLATNESS: see Taps in taps.hpp"
+#error "FLATNESS: see Taps in tap_tables.hpp"
 #endif
 #ifndef SMOOTHNESS
-#error "SMOOTHNESS: see Taps in taps.hpp"
+#error "SMOOTHNESS: see Taps in tap_tables.hpp"
 #endif
 
 typedef struct {
@@ -468,7 +468,7 @@ static inline int material_within(const struct FrameParams* f, global const stru
   return material;
 }
 
-// Chooses what a pass does in a block, as Taps in taps.hpp says.
+// Chooses what a pass does in a block, as Taps in tap_tables.hpp says.
 static inline struct BlockPass pass_over(const struct FrameParams* f, global const struct MaterialParams* materials,
                                          global const struct TapLevelParams* levels,
                                          global const struct BlockParams* blocks, int block_x, int block_y, int axis) {

@@ -1,4 +1,4 @@
-// Finds the level that a material takes of its level table: see Taps in taps.hpp.
+// Finds the level that a material takes of its level table: see Taps in tap_tables.hpp.
 #include "params.h"
 
 typedef struct {

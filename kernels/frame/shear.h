@@ -1,5 +1,5 @@
 // The vertical pass runs along (shear, 1), so that on the surface it crosses the horizontal one at a right angle: see
-// Taps in taps.hpp. Taps that are rotated are not sheared.
+// Taps in tap_tables.hpp. Taps that are rotated are not sheared.
 #include "base/vector.h"
 #include "params.h"
 

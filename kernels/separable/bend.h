@@ -1,4 +1,4 @@
-// The difference between a smooth surface and the plane of a level: q and k of Taps in taps.hpp.
+// The difference between a smooth surface and the plane of a level: q and k of Taps in tap_tables.hpp.
 #include "frame/tangent.h"
 
 typedef struct {

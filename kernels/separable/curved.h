@@ -1,4 +1,4 @@
-// Curved blocks: weights by the true distance of surface points. See Taps in taps.hpp.
+// Curved blocks: weights by the true distance of surface points. See Taps in tap_tables.hpp.
 #include "base/rotation.h"
 #include "frame/tangent.h"
 #include "separable/octaves.h"

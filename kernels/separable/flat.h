@@ -1,4 +1,4 @@
-// Flat blocks: constant weights. See Taps in taps.hpp.
+// Flat blocks: constant weights. See Taps in tap_tables.hpp.
 #include "classify/tap_level.h"
 #include "separable/pass.h"
 

@@ -1,4 +1,4 @@
-// Functions of the squared distance, a parabola in each octave of its square: RadialTable of taps.hpp.
+// Functions of the squared distance, a parabola in each octave of its square: RadialTable of tap_tables.hpp.
 #include "base/vector.h"
 #include "params.h"
 

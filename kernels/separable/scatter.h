@@ -1,4 +1,4 @@
-// One separable pass over V pixels of a row. Taps in taps.hpp says what it computes.
+// One separable pass over V pixels of a row. Taps in tap_tables.hpp says what it computes.
 #include "classify/tap_level.h"
 #include "separable/curved.h"
 #include "separable/flat.h"

@@ -1,4 +1,4 @@
-// Smooth blocks: weights to first order in the stretch and the skew of each pixel. See Taps in taps.hpp.
+// Smooth blocks: weights to first order in the stretch and the skew of each pixel. See Taps in tap_tables.hpp.
 #include "classify/tap_level.h"
 #include "separable/bend.h"
 #include "separable/pass.h"

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "opencl/program.hpp"
-#include "screen/window_layout.hpp"
+#include "screen/methods/window_layout.hpp"
 
 namespace dermis {
 

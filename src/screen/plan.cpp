@@ -8,10 +8,10 @@
 
 #include "opencl/program.hpp"
 #include "screen/check_materials.hpp"
-#include "screen/disc_tables.hpp"
 #include "screen/frame_images.hpp"
 #include "screen/frame_run.hpp"
 #include "screen/material_tables.hpp"
+#include "screen/methods/disc_tables.hpp"
 #include "screen/plan_state.hpp"
 #include "taps/check_design.hpp"
 

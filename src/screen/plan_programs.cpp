@@ -4,7 +4,7 @@
 
 #include "dermis/taps.hpp"
 #include "screen/frame_images.hpp"
-#include "screen/scatter_methods.hpp"
+#include "screen/methods/scatter_methods.hpp"
 
 namespace dermis {
 

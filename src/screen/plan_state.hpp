@@ -8,10 +8,10 @@
 
 #include "dermis/plan.hpp"
 #include "opencl/memory_pool.hpp"
+#include "screen/methods/scatter_methods.hpp"
 #include "screen/plan_programs.hpp"
 #include "screen/plan_settings.hpp"
 #include "screen/run_memory.hpp"
-#include "screen/scatter_methods.hpp"
 
 namespace dermis {
 

@@ -4,7 +4,7 @@
 #include <unsupported/Eigen/NonLinearOptimization>
 
 #include "taps/model/separable_model.hpp"
-#include "taps/prediction/natural_images.hpp"
+#include "taps/prediction/natural_spectrum.hpp"
 
 namespace dermis {
 

@@ -5,7 +5,7 @@
 #include <array>
 
 #include "dermis/profile.hpp"
-#include "taps/prediction/natural_images.hpp"
+#include "taps/prediction/natural_spectrum.hpp"
 
 namespace dermis {
 

@@ -9,7 +9,7 @@
 
 #include "taps/model/separable_model.hpp"
 #include "taps/prediction/lattice_waves.hpp"
-#include "taps/prediction/natural_images.hpp"
+#include "taps/prediction/natural_spectrum.hpp"
 
 namespace dermis {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "taps/prediction/natural_images.hpp"
+#include "taps/prediction/natural_spectrum.hpp"
 
 namespace dermis {
 

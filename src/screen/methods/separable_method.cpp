@@ -1,4 +1,4 @@
-#include "screen/separable_method.hpp"
+#include "screen/methods/separable_method.hpp"
 
 #include <array>
 #include <cmath>

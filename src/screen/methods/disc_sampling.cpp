@@ -6,11 +6,11 @@
 #include <numbers>
 
 #include "opencl/program.hpp"
-#include "screen/disc_tables.hpp"
 #include "screen/frame_run.hpp"
-#include "screen/profile_tables.hpp"
-#include "screen/scatter_methods.hpp"
-#include "screen/window_layout.hpp"
+#include "screen/methods/disc_tables.hpp"
+#include "screen/methods/profile_tables.hpp"
+#include "screen/methods/scatter_methods.hpp"
+#include "screen/methods/window_layout.hpp"
 
 namespace dermis {
 

@@ -1,4 +1,4 @@
-#include "screen/profile_tables.hpp"
+#include "screen/methods/profile_tables.hpp"
 
 #include <algorithm>
 #include <array>

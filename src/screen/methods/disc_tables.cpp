@@ -1,4 +1,4 @@
-#include "screen/disc_tables.hpp"
+#include "screen/methods/disc_tables.hpp"
 
 #include <algorithm>
 #include <cmath>

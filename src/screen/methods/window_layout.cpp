@@ -1,4 +1,4 @@
-#include "screen/window_layout.hpp"
+#include "screen/methods/window_layout.hpp"
 
 #include <limits>
 

@@ -4,9 +4,9 @@
 #include <bit>
 
 #include "opencl/program.hpp"
-#include "screen/scatter_methods.hpp"
-#include "screen/separable_method.hpp"
-#include "screen/window_layout.hpp"
+#include "screen/methods/scatter_methods.hpp"
+#include "screen/methods/separable_method.hpp"
+#include "screen/methods/window_layout.hpp"
 
 namespace dermis {
 

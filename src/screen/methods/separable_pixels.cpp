@@ -1,9 +1,9 @@
 // The separable passes over a window that is the frame, for devices where a work-item computes one pixel. The kernels
 // are in kernels/separable/pixel.cl.
 #include "opencl/program.hpp"
-#include "screen/scatter_methods.hpp"
-#include "screen/separable_method.hpp"
-#include "screen/window_layout.hpp"
+#include "screen/methods/scatter_methods.hpp"
+#include "screen/methods/separable_method.hpp"
+#include "screen/methods/window_layout.hpp"
 
 namespace dermis {
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "screen/frame_run.hpp"
-#include "screen/scatter_method.hpp"
+#include "screen/methods/scatter_method.hpp"
 
 namespace dermis {
 

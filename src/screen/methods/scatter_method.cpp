@@ -1,4 +1,4 @@
-#include "screen/scatter_method.hpp"
+#include "screen/methods/scatter_method.hpp"
 
 #include "screen/frame_run.hpp"
 

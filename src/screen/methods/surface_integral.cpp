@@ -1,9 +1,9 @@
 // The surface integral over all visible pixels of a material. The kernels are in kernels/integral/exact.cl.
 #include "opencl/program.hpp"
 #include "screen/frame_run.hpp"
-#include "screen/profile_tables.hpp"
-#include "screen/scatter_methods.hpp"
-#include "screen/window_layout.hpp"
+#include "screen/methods/profile_tables.hpp"
+#include "screen/methods/scatter_methods.hpp"
+#include "screen/methods/window_layout.hpp"
 
 namespace dermis {
 

@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "screen/scatter_method.hpp"
+#include "screen/methods/scatter_method.hpp"
 
 namespace dermis {
 

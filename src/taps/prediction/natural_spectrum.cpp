@@ -1,4 +1,4 @@
-#include "taps/prediction/natural_images.hpp"
+#include "taps/prediction/natural_spectrum.hpp"
 
 #include <cmath>
 #include <numbers>
