@@ -25,7 +25,7 @@ namespace {
 /// Names that an #if of a kernel asks for, each 0 or 1.
 const std::set<std::string> all_flags = {"HAS_ALBEDO", "HAS_DEPTH",   "HAS_MASK",      "HAS_MATERIAL", "HAS_MATTE",
                                          "HAS_NORMAL", "HAS_STRETCH", "HAS_THICKNESS", "PIXEL_WIDTH",  "JITTER",
-                                         "SHEARED",    "LIT",         "TILED",         "TANGENT_DISC", "RECURSIVE"};
+                                         "SHEARED",    "LIT",         "TANGENT_DISC",  "INTERLEAVED"};
 
 /// Other names that an #if asks for.
 const std::set<std::string> not_flags = {"V",         "TERMS",           "TABLE_SHIFT",
@@ -50,7 +50,8 @@ const std::vector<Group> groups = {
     {{"classify/classify.cl", "classify/fingerprint.cl"}, {BLOCK}, {}},
     {{"texture/texture_prepare.cl", "texture/texture_finish.cl", "texture/texture_blur.cl"}, all_widths, {{"LIT", 0}}},
     {{"texture/recursion.cl"}, all_widths, {{"LIT", 0}, {"HAS_ALBEDO", 0}, {"HAS_MASK", 0}}},
-    {{"lighting/shadow_maps.cl", "lighting/shade.cl", "lighting/transmit.cl"}, {1}, {}},
+    {{"lighting/shadow_maps.cl", "lighting/shade.cl"}, {1}, {}},
+    {{"lighting/shadow_maps.cl", "lighting/transmit.cl"}, {1}, {}},
 };
 
 /// Build options of variants in which any two flags have all four pairs of values, and each flag both with each width.
