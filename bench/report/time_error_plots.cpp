@@ -63,6 +63,7 @@ Panel time_error_of_picture(const Measurement& measurement) {
   double shortest = HUGE_VAL, longest = 0, least = HUGE_VAL, most = 0;
   // The last part is what lies near edges.
   for (std::size_t i = 0; i + 1 < measurement.parts.size(); ++i) {
+    if (measurement.parts[i].pixels == 0) continue;
     for (std::size_t k = 0; k < series.size(); ++k) {
       const char* colour = picture_colours[i % std::size(picture_colours)];
       Curve curve = {.title = measurement.parts[i].name + ", " + series[k],
