@@ -29,12 +29,14 @@ void put_row(std::array<double, 16>& matrix, int row, const Vector& v, double sc
   matrix[4 * row + 3] = last;
 }
 
-Light random_light(Random& random, bool from_above) {
+enum class Side { any, above, below };
+
+Light random_light(Random& random, Side side) {
   Light light;
   light.kind = static_cast<Light::Kind>(random.integer(0, 2));
   const auto any = [&] { return random.uniform(-1, 1); };
   Vector from = unit({any(), any(), any()});
-  if (from_above) from[2] = std::abs(from[2]);
+  if (side != Side::any) from[2] = std::copysign(from[2], side == Side::above ? 1 : -1);
   const double distance = random.uniform(15, 30);
   for (int i = 0; i < 3; ++i) {
     light.position[i] = distance * from[i];
@@ -114,7 +116,8 @@ dermis::Light RandomLight::get() const {
 std::vector<RandomLight> random_lights(Random& random, int count, bool with_gaps, bool from_above) {
   std::vector<RandomLight> lights;
   for (int i = 0; i < count; ++i) {
-    lights.push_back({random_light(random, from_above), {}});
+    const Side side = from_above ? Side::above : i == 0 ? Side::below : Side::any;
+    lights.push_back({random_light(random, side), {}});
     if (i == 0 || random.integer(0, 3) != 0) add_map(random, lights.back(), with_gaps);
   }
   return lights;

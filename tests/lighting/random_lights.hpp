@@ -19,7 +19,7 @@ struct RandomLight {
 
 /// Returns lights around a surface within 10 units of the origin. Most have a map of any format and strides, over a
 /// part of the surface, with bumps above and below it and texels that show nothing. If `from_above`, all lights have z
-/// > 0.
+/// > 0, else the first one has z < 0, so that light comes through.
 std::vector<RandomLight> random_lights(Random& random, int count, bool with_gaps = true, bool from_above = false);
 
 std::vector<dermis::Light> all_of(const std::vector<RandomLight>& lights);

@@ -130,11 +130,13 @@ TEST_CASE("transmitted light is that of the oracle", "[translucency]") {
   int loose = 0;
   int values = 0;
   int touched = 0;
-  for (unsigned salt = 0; salt < 3; ++salt) {
+  for (unsigned salt = 0; salt < 4; ++salt) {
     Random random(810 + salt);
-    constexpr std::pair<int, int> sizes[] = {{1, 1}, {37, 19}, {7, 5}};
-    const auto [width, height] = sizes[salt % 3];
-    Case its(random, width, height, random.coin());
+    constexpr std::pair<int, int> sizes[] = {{1, 1}, {37, 19}, {7, 5}, {37, 19}};
+    const auto [width, height] = sizes[salt];
+    // Light comes through the last one wherever a light shines, as its thickness image holds where no map does.
+    const bool everything = salt == 3;
+    Case its(random, width, height, random.coin(), everything);
     CAPTURE(test_seed(), salt);
     run(Device::open(), its);
     const auto expected = dermis::oracle::transmit(its.frame(), slabs_of(its.materials), its.options);

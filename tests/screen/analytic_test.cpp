@@ -63,6 +63,7 @@ bool has_terms_that_cancel(const RandomFrame& frame) {
 
 TEST_CASE("constant light stays constant on any geometry", "[analytic]") {
   const Device device = Device::open();
+  std::int64_t scattered = 0;
   for (unsigned round = 0; round < 4; ++round) {
     Random random(300 + round);
     RandomFrame random_frame(random, {.width = 257, .height = 89, .float_only = true});
@@ -78,7 +79,7 @@ TEST_CASE("constant light stays constant on any geometry", "[analytic]") {
     CAPTURE(test_seed(), round);
     const auto stats =
         Plan(device, random_frame.materials, FrameDescription::of(frame), random_frame.options).run(frame);
-    CHECK(stats.pixels_scattered > 1000);
+    scattered += stats.pixels_scattered;
     double worst = 0;
     for (int y = 0; y < 89; ++y) {
       for (int x = 0; x < 257; ++x) {
@@ -90,6 +91,7 @@ TEST_CASE("constant light stays constant on any geometry", "[analytic]") {
     // Terms that cancel are larger than their sum, and so is their rounding.
     CHECK(worst <= (has_terms_that_cancel(random_frame) ? 1e-5 : 2e-6));
   }
+  CHECK(scattered > 1000);  // In one frame by itself all kernels may be narrower than half a pixel.
 }
 
 TEST_CASE("the light of one pixel on a plane is kept", "[analytic]") {

@@ -15,6 +15,7 @@ TEST_CASE("kernels equal the oracle within float rounding", "[kernels]") {
   const Device device = Device::open();
   constexpr int sizes[][2] = {{1, 1}, {7, 5}, {257, 89}, {16, 16}, {33, 64}, {100, 3}, {2, 90}, {129, 40}};
   Tally tally;
+  std::int64_t scattered = 0;
   for (unsigned round = 0; round < 10; ++round) {
     Random random(round);
     const auto& [width, height] = sizes[round % 8];
@@ -30,13 +31,15 @@ TEST_CASE("kernels equal the oracle within float rounding", "[kernels]") {
     const oracle::Reference expected = oracle::separable(frame, materials, random_frame.options);
 
     const Plan plan(device, random_frame.materials, FrameDescription::of(frame), random_frame.options);
-    plan.run(frame);
+    scattered += plan.run(frame).pixels_scattered;
 
     compare(random_frame, expected, tally);
   }
   INFO("worst error / bound " << tally.worst << ", " << tally.loose << " of " << tally.values << " bounds are loose");
-  CHECK(tally.changed > 10000);  // The filter did something.
-  CHECK(tally.worst > 1e-3);     // The bound is of the order of the errors.
+  // The filter did something, in frames whose kernels are not all narrower than half a pixel.
+  CHECK(scattered > 1000);
+  CHECK(tally.changed > scattered / 2);
+  CHECK(tally.worst > 1e-3);  // The bound is of the order of the errors.
   // Bounds are tight, but where terms of high rank cancel, or where float32 cannot tell which column a tap of the
   // vertical pass falls on, so that the bound admits both.
   CHECK(tally.loose < tally.values / 500);
