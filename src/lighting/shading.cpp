@@ -117,7 +117,8 @@ void Shading::run(const ShadingFrame& frame) const {
   const params::ShadingParams params = state_->params_of(frame);
   with_device_errors([&] {
     const cl::Context context(state_->device.context(), true);
-    const cl::CommandQueue queue = cache_of(state_->device).queue(state_->device);
+    const BorrowedQueue borrowed(state_->device);
+    const cl::CommandQueue& queue = *borrowed;
     const ImageBuffers memory(context, frame.width, frame.height, images);
     check_outputs(memory, images, {{light, -1}, {seen, albedo}, {specular, -1}, {beauty, -1}});
     const BoundLights lights(context, queue, state_->program, frame.lights);

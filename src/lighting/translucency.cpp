@@ -124,7 +124,8 @@ void Translucency::run(const TranslucencyFrame& frame) const {
   make_light_params(frame.lights);  // throws if one is wrong, before anything is done
   with_device_errors([&] {
     const cl::Context context(state_->device.context(), true);
-    const cl::CommandQueue queue = cache_of(state_->device).queue(state_->device);
+    const BorrowedQueue borrowed(state_->device);
+    const cl::CommandQueue& queue = *borrowed;
     const ImageBuffers memory(context, frame.width, frame.height, images);
     check_outputs(memory, images, {{lit, light}, {result, beauty}});
     const BoundLights lights(context, queue, state_->program, frame.lights);

@@ -11,11 +11,23 @@ std::size_t bytes(const std::vector<Row>& rows) {
 
 }  // namespace
 
-cl::CommandQueue DeviceCache::queue(const Device& device) {
-  std::call_once(queue_made_, [&] {
-    queue_ = cl::CommandQueue(cl::Context(device.context(), true), cl::Device(device.id(), true));
-  });
-  return queue_;
+BorrowedQueue::BorrowedQueue(const Device& device) : cache_(cache_of(device)) {
+  {
+    const std::scoped_lock lock(cache_.queues_mutex);
+    if (!cache_.queues.empty()) {
+      queue_ = cache_.queues.back();
+      cache_.queues.pop_back();
+      return;
+    }
+  }
+  queue_ =
+      cl::CommandQueue(cl::Context(device.context(), true), cl::Device(device.id(), true), CL_QUEUE_PROFILING_ENABLE);
+}
+
+BorrowedQueue::~BorrowedQueue() {
+  clFinish(queue_());  // whatever has ended the run
+  const std::scoped_lock lock(cache_.queues_mutex);
+  cache_.queues.push_back(queue_);
 }
 
 std::size_t DeviceCache::bytes_of(const Taps& taps) {

@@ -4,6 +4,7 @@
 #include <memory>
 #include <mutex>
 #include <string>
+#include <vector>
 
 #include "dermis/device.hpp"
 #include "dermis/profile.hpp"
@@ -30,18 +31,31 @@ struct DeviceCache {
   /// Designs without a rank, with the rank that was found for them.
   Recent<FitKey, TapsDesign> designs{1024, [](const TapsDesign&) { return 1; }};
 
-  /// A queue of the device, made when first asked for. It stays: PoCL 3.1 lets go of a command's event after it has
-  /// said that it is done, and then looks at the queue.
-  cl::CommandQueue queue(const Device& device);
+  /// Queues that no run has.
+  std::vector<cl::CommandQueue> queues;
+  std::mutex queues_mutex;
 
   static std::size_t bytes_of(const Taps& taps);
-
- private:
-  std::once_flag queue_made_;
-  cl::CommandQueue queue_;
 };
 
 /// The cache that a device shares with its copies.
 DeviceCache& cache_of(const Device& device);
+
+/// A queue that measures times, for one run at a time. The device keeps it after the run: PoCL 3.1 lets go of a
+/// command's event after it has said that the command is done, and then looks at the queue.
+class BorrowedQueue {
+ public:
+  /// The device outlives it.
+  explicit BorrowedQueue(const Device& device);
+  ~BorrowedQueue();
+  BorrowedQueue(const BorrowedQueue&) = delete;
+  BorrowedQueue& operator=(const BorrowedQueue&) = delete;
+
+  const cl::CommandQueue& operator*() const { return queue_; }
+
+ private:
+  DeviceCache& cache_;
+  cl::CommandQueue queue_;
+};
 
 }  // namespace dermis

@@ -6,6 +6,7 @@
 #include <future>
 #include <string>
 
+#include "opencl/device_cache.hpp"
 #include "opencl/program.hpp"
 #include "screen/check_materials.hpp"
 #include "screen/frame_images.hpp"
@@ -141,7 +142,8 @@ Stats Plan::run(const Frame& frame, Reuse::State* reuse, const Progress& progres
   const auto go_on = [&](double share) { return !progress || progress(share); };
   return with_device_errors([&] {
     const cl::Context context(state_->settings.device.context(), true);
-    const cl::CommandQueue queue(context, cl::Device(state_->settings.device.id(), true), CL_QUEUE_PROFILING_ENABLE);
+    const BorrowedQueue borrowed(state_->settings.device);
+    const cl::CommandQueue& queue = *borrowed;
     const BoundImages bound(context, frame, images);
     // Whatever ends the run, the device must be done with the caller's memory first.
     const BorrowedMemory<RunMemory> memory(state_->memories, context, queue,

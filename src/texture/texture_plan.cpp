@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "opencl/device.hpp"
+#include "opencl/device_cache.hpp"
 #include "texture/texture_scatter.hpp"
 
 namespace dermis {
@@ -48,10 +49,10 @@ TextureStats TexturePlan::run(const TextureFrame& frame) const {
   const auto images = check_texture(frame, state_->description);
   return with_device_errors([&] {
     const cl::Context context(state_->device.context(), true);
-    const cl::CommandQueue queue(context, cl::Device(state_->device.id(), true), CL_QUEUE_PROFILING_ENABLE);
+    const BorrowedQueue queue(state_->device);
     const TextureBuffers buffers(context, frame, images);
     const TextureScatter& method = *state_->method;
-    TextureRun run(queue, method.image_program(), frame, buffers, state_->options.albedo_mix);
+    TextureRun run(*queue, method.image_program(), frame, buffers, state_->options.albedo_mix);
     TextureStats stats = method.scatter(run);
     stats.total_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
     return stats;
