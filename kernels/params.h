@@ -55,7 +55,6 @@ typedef long long Bytes;
 #define TILE_SMOOTH 5  // all blocks are flat or smooth: no depth of taps
 #define TILE_CURVED 6
 #define TILE_REUSED 7  // nothing within reach has changed since the frame before
-#define TILE_KINDS 8
 
 // No tap of the vertical pass lies more columns than this from its pixel, unless it is rotated: see shear in
 // tap_tables.hpp.
@@ -137,7 +136,7 @@ struct BlockParams {
   float depth_low, depth_high;      // mm; of all pixels with a material
   float along_x_low, along_x_high;  // change of depth to the next pixel of the same material, mm
   float along_y_low, along_y_high;
-  float finest_x, finest_y;    // largest px_per_mm of a pixel that scatters, px per mm, times its width factor
+  float finest_x, finest_y;    // most pixels per mm at a pixel that scatters, times its width factor
   unsigned int scattering[4];  // a bit for each material that some pixel scatters by
   int material;                // byte of all its pixels in the plane of material ids; 0 if they differ
   int scattered;               // pixels

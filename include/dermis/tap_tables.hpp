@@ -63,7 +63,7 @@ struct TapLevel {
 };
 
 /// A profile as the separable passes read it: a level table of tap sets over kernel size, so that every tap lies on a
-/// whole pixel whatever the px_per_mm, and f of each term with its integral as tables, so that a pass can weigh each
+/// whole pixel at any size of a pixel, and f of each term with its integral as tables, so that a pass can weigh each
 /// tap by the true distance of the surface points. METHODS.md, "The separable passes", says what the passes make of it:
 /// which level a block of 16 x 16 pixels takes, its class (flat, smooth or curved), the shear of the vertical pass, and
 /// the weights in each class.

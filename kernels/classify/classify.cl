@@ -245,7 +245,7 @@ static inline void write_block(global struct BlockParams* block, const Seen* see
   block->along_x_high = highest(seen->along_x.high);
   block->along_y_low = lowest(seen->along_y.low);
   block->along_y_high = highest(seen->along_y.high);
-  // The largest px_per_mm is that of the smallest pixel.
+  // The smallest pixel has the most pixels per mm.
   const int any_scattered = count_lanes(seen->scattered);
   block->finest_x = any_scattered > 0 ? 1.0f / lowest(seen->size_x) : 0.0f;
   block->finest_y = any_scattered > 0 ? 1.0f / lowest(seen->size_y) : 0.0f;
@@ -482,7 +482,7 @@ static inline struct BlockPass pass_over(const struct FrameParams* f, global con
 #if !HAS_DEPTH && !HAS_MATTE && !PIXEL_WIDTH && !JITTER
   pass.block_class = CLASS_FLAT;
 #elif !PIXEL_WIDTH && !JITTER
-  // px_per_mm of flat and smooth blocks may be a little larger.
+  // Flat and smooth blocks may have a few more pixels per mm.
   const int farthest_px = farthest_tap_of(own, materials, levels, pass.px_per_mm, CLASS_CURVED);
   const int reach_px = min(farthest_px + farthest_px / 8, max(f->width, f->height));
   const Interval nothing = {INFINITY, -INFINITY};

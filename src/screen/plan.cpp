@@ -6,6 +6,7 @@
 #include <future>
 #include <string>
 
+#include "dermis/tap_tables.hpp"
 #include "opencl/device_cache.hpp"
 #include "opencl/program.hpp"
 #include "screen/check_materials.hpp"
@@ -202,6 +203,35 @@ Event Plan::enqueue(const Frame& frame, cl_command_queue queue, std::span<const 
     clRetainEvent(event);
     return dermis::Event(event);
   });
+}
+
+const Options& Plan::options() const { return state_->settings.options; }
+
+MaterialTaps Plan::taps_of(std::size_t material, double pixel_mm) const {
+  constexpr double usual_radius_px = 64;
+  if (state_->settings.options.method != Method::separable) {
+    throw Error(ErrorCode::usage, "method", name_of(state_->settings.options.method),
+                "separable, for the others have no taps");
+  }
+  if (material >= state_->settings.materials.size()) {
+    throw Error(ErrorCode::usage, "material", std::to_string(material), "one of the plan, from 0");
+  }
+  const Profile& profile = state_->settings.materials[material].profile;
+  MaterialTaps result{.design = with_rank(profile, *state_->settings.materials[material].taps)};
+  result.count = result.design.count;
+  const auto taps = cache_of(state_->settings.device).taps.get({profile, result.design}, [&] {
+    return std::make_shared<const Taps>(make_taps(profile, result.design));
+  });
+  if (pixel_mm == 0) pixel_mm = taps->radius_mm / usual_radius_px;
+  if (result.design.tolerance > 0) {
+    const int level = Taps::level_index(static_cast<float>(taps->radius_mm / pixel_mm));
+    result.count = level < 0 ? 1 : 2 * static_cast<int>(taps->levels[level].offsets_px.size()) + 1;
+  }
+  TapsDesign there = result.design;
+  there.tolerance = 0;
+  there.count = std::max(result.count, 3);  // narrow kernels have fewer taps than any design
+  result.predicted_rel_l2 = make_tap_set(profile, there, pixel_mm).predicted_rel_l2;
+  return result;
 }
 
 std::size_t Plan::scratch_bytes(int width, int height) const {

@@ -4,7 +4,6 @@
 
 #include "dermis/taps.hpp"
 #include "screen/frame_images.hpp"
-#include "screen/methods/scatter_methods.hpp"
 
 namespace dermis {
 
@@ -39,11 +38,6 @@ PlanPrograms plan_programs(const PlanSettings& settings, const ScatterMethod& me
     programs.classification = programs.method;
   }
   return programs;
-}
-
-PlanPrograms plan_programs(const PlanSettings& settings) {
-  const auto method = make_scatter_method(settings);
-  return plan_programs(settings, *method, method->most_terms());
 }
 
 }  // namespace dermis

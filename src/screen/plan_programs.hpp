@@ -15,7 +15,4 @@ struct PlanPrograms {
 /// The sources of the programs of a plan whose materials have so many terms.
 PlanPrograms plan_programs(const PlanSettings& settings, const ScatterMethod& method, int terms);
 
-/// The sources of the programs of a plan that is not made.
-PlanPrograms plan_programs(const PlanSettings& settings);
-
 }  // namespace dermis

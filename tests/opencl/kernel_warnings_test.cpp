@@ -43,10 +43,10 @@ struct Group {
 const std::vector<int> all_widths = {1, 4, 8, 16};
 
 const std::vector<Group> groups = {
-    {{"frame/finish.cl", "separable/tile.cl"}, all_widths, {{"TILED", 1}}},
-    {{"frame/prepare.cl", "integral/exact.cl"}, all_widths, {{"TILED", 0}}},
-    {{"frame/prepare.cl", "separable/pixel.cl"}, {1}, {{"TILED", 0}}},
-    {{"frame/finish.cl", "integral/disc_texels.cl", "integral/disc.cl"}, {1}, {{"TILED", 0}}},
+    {{"frame/finish.cl", "separable/tile.cl"}, all_widths, {}},
+    {{"frame/prepare.cl", "integral/exact.cl"}, all_widths, {}},
+    {{"frame/prepare.cl", "separable/pixel.cl"}, {1}, {}},
+    {{"frame/finish.cl", "integral/disc_texels.cl", "integral/disc.cl"}, {1}, {}},
     {{"classify/classify.cl", "classify/fingerprint.cl"}, {BLOCK}, {}},
     {{"texture/texture_prepare.cl", "texture/texture_finish.cl", "texture/texture_blur.cl"}, all_widths, {{"LIT", 0}}},
     {{"texture/recursion.cl"}, all_widths, {{"LIT", 0}, {"HAS_ALBEDO", 0}, {"HAS_MASK", 0}}},
