@@ -91,7 +91,7 @@ FORCED_INLINE void add_shears(RunShears* shears, const Segment* segment, int at)
 }
 
 // A run of pixels shares the mean of its shears, and less where they vary: then it is no good guess for each.
-#define SHEAR_RANGE (4 * 4096)
+#define SHEAR_RANGE (2 * 4096)
 
 static inline int shear_of_run(int8 shear, int8 is_material) {
   const int8 low8 = select((int8)(INT_MAX), shear, is_material);

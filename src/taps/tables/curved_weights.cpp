@@ -20,7 +20,7 @@ struct Nodes {
     constexpr int count = 20;
     constexpr double first = 0.8;
     constexpr double last = 50;
-    constexpr double fading = 0.6;
+    constexpr double fading = 0.75;
     for (int i = 0; i < count; ++i) x.push_back(first * std::pow(last / first, i / (count - 1.0)));
     importance.resize(static_cast<Eigen::Index>(x.size()));
     for (std::size_t i = 0; i < x.size(); ++i) {
