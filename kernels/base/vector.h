@@ -95,6 +95,10 @@ FORCED_INLINE vint convert_vint(vfloat value) {
 #endif
 }
 
+// Rounds to the nearest whole number, below 2^22: beside 1.5 * 2^23 a float has no fraction. PoCL's rint takes twenty
+// instructions.
+FORCED_INLINE vint nearest_int(vfloat value) { return as_vint(value + 12582912.0f) - as_int(12582912.0f); }
+
 FORCED_INLINE vfloat convert_vfloat(vint value) {
 #if V == 1
   return (float)value;

@@ -61,7 +61,7 @@ FORCED_INLINE Segment segment_at(const struct FrameParams* f, const Window* w, i
     const vfloat mixed = fma(along_x * p.x_per_z, slope_y, fma(p.y_per_z * slope_x, along_y, slope_x * slope_y));
     const vfloat shear = clamp(-mixed * inverse, (vfloat)(-1.0f), (vfloat)(1.0f));
     // It is not a number where lengths underflow.
-    result.shear = convert_vint(rint(4096.0f * select_or_zero(AS_MASK(fabs(shear) < 2.0f), shear)));
+    result.shear = nearest_int(4096.0f * select_or_zero(AS_MASK(fabs(shear) < 2.0f), shear));
     const vfloat nx = slope_x * size_y;
     const vfloat ny = slope_y * size_x;
     const vfloat nz = fma(size_x, along_y, size_y * p.x_per_z * slope_x);
