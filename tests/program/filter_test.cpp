@@ -545,11 +545,11 @@ TEST_CASE("the numbers of --stats-json add up") {
 
   const auto& tiles = stats["tiles"];
   int tiles_of_kinds = 0;
-  for (const char* kind : {"without_material", "narrow", "unlit", "uniform", "flat", "smooth", "curved", "reused"}) {
+  for (const char* kind : {"without_material", "narrow", "unlit", "uniform", "flat", "curved", "reused"}) {
     tiles_of_kinds += tiles[kind].get<int>();
   }
   CHECK(tiles["total"] == tiles_of_kinds);
-  CHECK(tiles["flat"].get<int>() + tiles["smooth"].get<int>() + tiles["curved"].get<int>() > 0);
+  CHECK(tiles["flat"].get<int>() + tiles["curved"].get<int>() > 0);
   const auto& pixels = stats["pixels"];
   CHECK(pixels["total"] == width * height);
   CHECK(pixels["total"].get<int>() ==

@@ -22,7 +22,7 @@ using Words = std::vector<std::string>;
 
 namespace {
 
-const std::array names = {"without material", "narrow", "unlit", "uniform", "flat", "smooth", "curved", "reused"};
+const std::array names = {"without material", "narrow", "unlit", "uniform", "flat", "curved", "reused"};
 
 /// The line of the legend for one kind.
 struct LegendLine {

@@ -63,7 +63,7 @@ TEST_CASE("pixels without material and narrow kernels keep their bits and are co
   CHECK(stats.tiles.rows == 3);
   CHECK(stats.count(TileKind::without_material) == 3);
   CHECK(stats.count(TileKind::narrow) == 3);
-  CHECK(stats.count(TileKind::flat) + stats.count(TileKind::smooth) + stats.count(TileKind::curved) == 6);
+  CHECK(stats.count(TileKind::flat) + stats.count(TileKind::curved) == 6);
   long changed = 0;
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
@@ -221,7 +221,7 @@ TEST_CASE("a channel that spreads less than half a pixel keeps its bits, and is 
     frame.scattered.host = scattered.data();
     const Stats stats = Plan(device, {{0, skin}}, FrameDescription::of(frame), {.taps = design}).run(frame);
     CHECK(stats.channels_narrow == width * height);
-    CHECK(stats.pixels_flat + stats.pixels_smooth > 0);
+    CHECK(stats.pixels_flat > 0);
     long changed = 0;
     for (std::size_t i = 0; i < light.size(); ++i) {
       if (i % 3 == 2) {
