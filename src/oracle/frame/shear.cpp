@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <utility>
 
 namespace dermis::oracle {
 
@@ -9,7 +11,7 @@ namespace {
 
 constexpr int fraction_bits = 12;
 constexpr double one = 1 << fraction_bits;
-constexpr int full_damping = 1 << 14;  // The range of shears that would reduce their mean to 0: 4 columns per row.
+constexpr int full_damping = 1 << 14;  // A range of 4 columns per row would reduce a mean to 0; the largest is 2.
 constexpr int most_px = 32;            // No tap lies farther to the side of its pixel.
 
 }  // namespace

@@ -40,7 +40,7 @@ BoundedShear whole_shear(Bounded shear);
 /// So many neighbours in a row share one shear on curved blocks.
 inline constexpr int shear_run_px = 8;
 
-/// Returns the mean of the shears of a run, which their range reduces, in integers that C rounds; 0 of none.
+/// Returns mean (1 - range / 2^14) of the shears of a run, where both divisions truncate as in C; 0 of none.
 BoundedShear damped_mean(std::span<const BoundedShear> shears);
 
 /// Returns how many columns a tap `offset_px` rows below its pixel lies to the right; `shear` is in 1/4096.

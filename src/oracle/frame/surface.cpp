@@ -200,7 +200,7 @@ BoundedShear Surface::shear(int x, int y) const {
   return shears_[static_cast<std::size_t>(y) * runs_per_row() + x / shear_run_px];
 }
 
-// With sheared passes a pixel stands for its patch: the area over its length along x is what it has across.
+// Across x the patch of a pixel is as long as its area over its length along x, whatever the angle of its sides.
 Bounded Surface::segment(int x, int y, Axis axis) const {
   if (axis == horizontal || !sheared_) return length(tangent(x, y, axis));
   return length(normal(x, y)) / length(tangent(x, y, horizontal));
@@ -213,6 +213,7 @@ Bounded Surface::distance2_mm2(int x, int y, int other_x, int other_y) const {
   const SurfacePixel& b = at(other_x, other_y);
   if (&a == &b) return exact(0);
   const Bounded across2 = view_.across2_mm2(other_x - x, other_y - y, a.position_mm[2], b.position_mm[2]);
+  // Both products and their sum may be flushed to zero.
   return flushed((b.position_mm[2] - a.position_mm[2]) * (b.slant_mm - a.slant_mm) + across2, 3);
 }
 

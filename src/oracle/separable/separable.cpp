@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -54,6 +55,13 @@ struct SeparableFrame {
   const Options& options;
   const BoundedPicture& light;  ///< before the passes
 };
+
+/// Returns 1 / max(1, weights), which is bounded whatever the error of the weights.
+Bounded limit_of(Bounded weights) {
+  const auto at = [](double its) { return 1 / std::max(its, 1.0); };
+  const double value = at(weights.value);
+  return rounded({value, std::max(at(weights.low()) - value, value - at(weights.high()))}, division_roundings);
+}
 
 /// One pass over a frame, along one axis. The horizontal one makes a picture of each term, the vertical one reads those
 /// and makes one picture of the sum over terms.
@@ -178,7 +186,7 @@ Outcome Pass::with_taps(int x, int y, const Choice& choice) {
   }
   BoundedRgb limit{exact(1), exact(1), exact(1)};  // of the weights of differences, on a curved surface
   if (choice.block_class == BlockClass::curved) {
-    for (int c = 0; c < 3; ++c) limit[c] = exact(1) / larger(sums_[0][c].weights(), exact(1));
+    for (int c = 0; c < 3; ++c) limit[c] = limit_of(sums_[0][c].weights());
   }
   Outcome values;
   for (std::size_t t = 0; t < taps.terms.size(); ++t) {
@@ -199,7 +207,10 @@ void Pass::add_center(int x, int y, const TapWeights& weights) {
   const std::span<const Term> terms = taps_at(x, y).terms;
   for (std::size_t t = 0; t < terms.size(); ++t) {
     if (!terms[t].normalised) continue;
-    for (int c = 0; c < 3; ++c) sums_[t][c].add(weights.center(t, c), inputs_[t].at(x, y, c));
+    for (int c = 0; c < 3; ++c) {
+      const Bounded weight = weights.center(t, c);
+      sums_[t][c].add(weight, inputs_[t].at(x, y, c), std::max(weight.low(), weights.least_center()));
+    }
   }
 }
 
@@ -227,17 +238,19 @@ void Pass::add_tap(std::span<const Reading> readings, const TapWeights& weights)
   for (std::size_t t = 0; t < sums_.size(); ++t) {
     for (int c = 0; c < 3; ++c) {
       Bounded weight;
+      double least_weight = std::numeric_limits<double>::infinity();
       Bounded light;
       bool has_light = false;
       for (const Reading& reading : readings) {
         const Bounded here = reading.is_there ? weights.tap(reading.place, t, c) : exact(0);
         weight = &reading == &readings.front() ? here : including(weight, here);
+        least_weight = std::min(least_weight, here.low());
         if (!reading.is_there) continue;
         const Bounded light_here = inputs_[t].at(reading.x, reading.y, c);
         light = has_light ? including(light, light_here) : light_here;
         has_light = true;
       }
-      if (has_light && !is_exactly(weight, 0)) sums_[t][c].add(weight, light);
+      if (has_light && !is_exactly(weight, 0)) sums_[t][c].add(weight, light, least_weight);
     }
   }
 }

@@ -6,8 +6,11 @@ namespace dermis::oracle {
 
 namespace {
 
-/// Returns t = scale / (a + softening).
-Bounded nearness(const Nearness& its, Bounded a) { return flushed(exact(its.scale) / (a + exact(its.softening))); }
+/// Returns t = scale / (a + softening). A device may add the softening to one part of a before the other, which is one
+/// more rounding of a sum that is no larger.
+Bounded nearness(const Nearness& its, Bounded a) {
+  return flushed(exact(its.scale) / rounded(a + exact(its.softening)));
+}
 
 /// Returns t (A + t (B + t C)), of which a coefficient, a product and a sum may each be flushed.
 Bounded cubic(const CubicWeight& weight, int c, Bounded t) {
@@ -19,7 +22,7 @@ Bounded cubic(const CubicWeight& weight, int c, Bounded t) {
 }  // namespace
 
 TapWeights::Place TapWeights::place(int x, int y, std::size_t pair) const {
-  if (choice_.block_class == BlockClass::flat) return {pair, {}, {}};
+  if (is_flat()) return {pair, {}, {}};
   return {pair, surface_.distance2_mm2(x_, y_, x, y), surface_.at(x, y).segment_mm[axis_]};
 }
 
@@ -28,15 +31,15 @@ Bounded TapWeights::flat_weight(std::size_t row, std::size_t term, int c) const 
 }
 
 Bounded TapWeights::center(std::size_t term, int c) const {
-  if (choice_.block_class == BlockClass::flat) return flat_weight(0, term, c);
+  if (is_flat()) return flat_weight(0, term, c);
   const Bounded s_per_k = surface_.at(x_, y_).segment_mm[axis_] / width_factor(c);
   const Bounded pairs = cubic(level_.weights[index(0, term)], c, nearness(level_.nearness[0], s_per_k));
-  return clamped(exact(1) - pairs, least_centre_weight, std::numeric_limits<double>::infinity());
+  return clamped(exact(1) - pairs, least_center(), std::numeric_limits<double>::infinity());
 }
 
 Bounded TapWeights::tap(const Place& place, std::size_t term, int c) const {
   const std::size_t row = place.pair + 1;
-  if (choice_.block_class == BlockClass::flat) return flat_weight(row, term, c);
+  if (is_flat()) return flat_weight(row, term, c);
   const Bounded k = width_factor(c);
   const Bounded per_k = exact(1) / k;
   const Bounded t = nearness(level_.nearness[row], flushed(place.distance2_mm2 * per_k * per_k));

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <limits>
 
 #include "dermis/tap_tables.hpp"
 #include "oracle/frame/surface.hpp"
@@ -27,9 +28,11 @@ class TapWeights {
   Place place(int x, int y, std::size_t pair) const;
 
   Bounded center(std::size_t term, int c) const;
+  double least_center() const { return is_flat() ? -std::numeric_limits<double>::infinity() : least_centre_weight; }
   Bounded tap(const Place& place, std::size_t term, int c) const;
 
  private:
+  bool is_flat() const { return choice_.block_class == BlockClass::flat; }
   Bounded width_factor(int c) const { return surface_.at(x_, y_).width_factor[c]; }
   /// The centre is row 0 of a level's weights, the first pair row 1.
   std::size_t index(std::size_t row, std::size_t term) const { return row * taps_.terms.size() + term; }

@@ -55,7 +55,7 @@ TEST_CASE("float32 stays within the bounds on random frames", "[bounds]") {
     const MadeFrame made = random_frame(random, size[0], size[1], plain);
     const Options options = random_options(random, plain);
     const Reference reference = separable(made.frame(), materials, options);
-    const FloatStyle style{random.coin(), random.coin(), random.coin(), random.coin(), random.coin()};
+    const FloatStyle style{random.coin(), random.coin(), random.coin(), random.coin(), random.coin(), random.coin()};
     const FloatFilter filter(made, materials, options, style);
     INFO("round " << round);
     worst = std::max(worst, largest_share(filter.scattered, reference.scattered, reference.scattered_bound));
@@ -163,6 +163,26 @@ TEST_CASE("the bound admits taps rotated or not", "[bounds]") {
     CHECK((reference.scattered(8, 8) > 0.1) == (jitter == 0));
     CHECK((reference.scattered_bound(8, 8) > 0.1) == (jitter == 1));
   }
+}
+
+TEST_CASE("bounds are finite where the only tap may fall on another material", "[bounds]") {
+  // A pixel is 1 mm large, and the depth grows by 1 mm per column and falls by 511/4096 mm per row: the shear is
+  // 255.5/4096, which takes the tap of the first pixel 1/2 column to the side. The centre has the least weight.
+  MadeFrame made(2, 9, one_px_per_mm, 0);
+  for (int i = 0; i < 18; ++i) {
+    made.depth.push_back(static_cast<float>(i % 2) - 511.0F / 4096 * static_cast<float>(i / 2));
+    made.material.push_back(i == 17 ? 2 : 1);
+  }
+  made.light[0] = 1;
+  Material material = pair_at_8_px();
+  set_levels(material.taps, {made_level(1, {8}, same_everywhere)}, tiny_rows(-1, 4));
+  add_term(material.taps, difference_term(1), tiny_rows(1, 0.25));
+  std::vector materials{material, material};
+  materials[0].id = 1;
+  materials[1].id = 2;
+  const Reference reference = separable(never_flat(made).frame(), materials, {});
+  for (const double bound : reference.scattered_bound.values) CHECK(std::isfinite(bound));
+  CHECK(reference.scattered_bound(0, 0) > 0.1);
 }
 
 TEST_CASE("the sum over terms is rounded", "[bounds]") {

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <numbers>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "dermis/oracle/reference.hpp"
@@ -160,43 +161,46 @@ class FloatFilter {
     }
   }
 
-  /// Returns t (A + t (B + t C)) without its factor t, and t.
-  std::array<float, 2> cubic(const dermis::CubicWeight& weight, const dermis::Nearness& nearness, float a,
-                             std::size_t c) const {
-    const float t = style_.divide(nearness.scale, a + nearness.softening);
-    return {multiply_add(t, multiply_add(t, weight[2][c], weight[1][c]), weight[0][c]), t};
+  /// Returns A + t (B + t C).
+  float over_nearness(const dermis::CubicWeight& weight, float t, std::size_t c) const {
+    return multiply_add(t, multiply_add(t, weight[2][c], weight[1][c]), weight[0][c]);
   }
 
   /// Returns the weight of the pixel itself in a normalised term.
   float weigh_centre(int axis, const FloatPixel& pixel, const dermis::TapLevel& level, std::size_t t,
                      std::size_t c) const {
     const float a = style_.divide(pixel.segment[axis], pixel.k[c]);
-    const auto [rest, nearness] = cubic(level.weights[t], level.nearness[0], a, c);
-    return std::fmax(multiply_add(-nearness, rest, 1.0F), dermis::least_centre_weight);
+    const float nearness = style_.divide(level.nearness[0].scale, a + level.nearness[0].softening);
+    const float others = over_nearness(level.weights[t], nearness, c);
+    return std::fmax(multiply_add(-nearness, others, 1.0F), dermis::least_centre_weight);
   }
 
-  /// Returns the squared distance of two pixels, given by how far they are apart, px.
-  float squared_distance(const FloatPixel& p, const FloatPixel& q, int dx, int dy) const {
+  /// Returns the squared distance of two pixels over k^2, plus the softening.
+  float softened_distance(std::size_t p, std::size_t q, float k, float softening) const {
     const auto scale_x = static_cast<float>(made_.camera.scale_x);
     const float aspect = scale_x / static_cast<float>(made_.camera.scale_y);
     const bool perspective = made_.camera.projection == dermis::Camera::Projection::perspective;
     const float mm_per_px = perspective ? 0 : static_cast<float>(made_.mm_per_unit) / scale_x;
     const float growth = perspective ? 1 / scale_x : 0;
-    const float h = multiply_add(aspect * aspect, static_cast<float>(dy * dy), static_cast<float>(dx * dx));
-    const float size2 = multiply_add(growth * growth * p.position[2], q.position[2], mm_per_px * mm_per_px);
-    return multiply_add(q.position[2] - p.position[2], q.slant - p.slant, h * size2);
+    const auto [dy, dx] = std::pair{static_cast<int>(q) / made_.width - static_cast<int>(p) / made_.width,
+                                    static_cast<int>(q) % made_.width - static_cast<int>(p) % made_.width};
+    const float offset2 = multiply_add(aspect * aspect, static_cast<float>(dy * dy), static_cast<float>(dx * dx));
+    const float z = pixels_[p].position[2];
+    const float size2 = multiply_add(growth * growth * z, pixels_[q].position[2], mm_per_px * mm_per_px);
+    const float dz = pixels_[q].position[2] - z;
+    const float de = pixels_[q].slant - pixels_[p].slant;
+    const float per_k = 1 / k;
+    if (style_.softens_first && k == 1) return multiply_add(offset2, size2, multiply_add(dz, de, softening));
+    const float distance2 = multiply_add(dz, de, offset2 * size2);
+    return style_.reciprocals ? multiply_add(distance2, per_k * per_k, softening) : distance2 / (k * k) + softening;
   }
 
   float weigh(int axis, std::size_t p, std::size_t q, const dermis::TapLevel& level, std::size_t pair, std::size_t t,
               std::size_t c) const {
     const FloatPixel& pixel = pixels_[p];
-    const int dx = static_cast<int>(q) % made_.width - static_cast<int>(p) % made_.width;
-    const int dy = static_cast<int>(q) / made_.width - static_cast<int>(p) / made_.width;
-    const float r2 = squared_distance(pixel, pixels_[q], dx, dy);
-    const float per_k = 1 / pixel.k[c];
-    const float a = style_.reciprocals ? r2 * per_k * per_k : r2 / (pixel.k[c] * pixel.k[c]);
-    const dermis::CubicWeight& weight = level.weights[(pair + 1) * taps_of(pixel).terms.size() + t];
-    const auto [rest, nearness] = cubic(weight, level.nearness[pair + 1], a, c);
+    const dermis::Nearness& its = level.nearness[pair + 1];
+    const float nearness = style_.divide(its.scale, softened_distance(p, q, pixel.k[c], its.softening));
+    const float rest = over_nearness(level.weights[(pair + 1) * taps_of(pixel).terms.size() + t], nearness, c);
     const float length = style_.divide(pixels_[q].segment[axis], pixel.k[c]);
     return style_.backwards ? length * (nearness * rest) : length * nearness * rest;
   }

@@ -12,11 +12,12 @@
 
 /// The choices that a device is free to make.
 struct FloatStyle {
-  bool fused = false;        ///< It multiplies and adds with one rounding.
-  bool differences = false;  ///< A difference term is sum w (x - x_p), not sum w x - (sum w) x_p.
-  bool backwards = false;    ///< It begins with the outer taps and the last term.
-  bool reciprocals = false;  ///< It multiplies by reciprocals, and does not divide.
-  bool crosses = false;      ///< It has areas from the cross product of tangents, and does not multiply it out.
+  bool fused = false;          ///< It multiplies and adds with one rounding.
+  bool differences = false;    ///< A difference term is sum w (x - x_p), not sum w x - (sum w) x_p.
+  bool backwards = false;      ///< It begins with the outer taps and the last term.
+  bool reciprocals = false;    ///< It multiplies by reciprocals, and does not divide.
+  bool crosses = false;        ///< It has areas from the cross product of tangents, and does not multiply it out.
+  bool softens_first = false;  ///< It adds the softening of nearness to one part of a squared distance, then the other.
 
   float multiply_add(float a, float b, float c) const { return fused ? std::fma(a, b, c) : a * b + c; }
   float divide(float a, float b) const { return reciprocals ? a * (1 / b) : a / b; }
