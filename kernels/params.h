@@ -16,8 +16,8 @@ typedef long long Bytes;
 // Rows that the vertical pass of a tile computes as soon as the horizontal one has made what it reads of them.
 #define STRIP_ROWS 32
 
-// Octaves of r^4 in a table of the separable passes.
-#define OCTAVES 32
+// Pixels of a row that lie in one aligned run have one shear in the vertical pass over a curved block.
+#define SHEAR_RUN 8
 
 // A tap level has weights for flat blocks at so many sizes of a pixel between it and the next level.
 #define LEVEL_PARTS 8
@@ -39,12 +39,11 @@ typedef long long Bytes;
 #define COUNTER_SCATTERED 3
 #define COUNTER_NARROW 4
 #define COUNTER_FLAT 5
-#define COUNTER_SMOOTH 6
-#define COUNTER_CHANNELS 7     // channels of pixels that no tap is read for
-#define COUNTER_TILE_HEIGHT 8  // px, as the device chose it
-#define COUNTER_UNLIT 9        // pixels
-#define COUNTER_REACH 10       // px that taps of the vertical pass go at most
-#define RUN_COUNTERS 11
+#define COUNTER_CHANNELS 6     // channels of pixels that no tap is read for
+#define COUNTER_TILE_HEIGHT 7  // px, as the device chose it
+#define COUNTER_UNLIT 8        // pixels
+#define COUNTER_REACH 9        // px that taps of the vertical pass go at most
+#define RUN_COUNTERS 10
 
 // Kinds of tile, as dermis::TileKind.
 #define TILE_WITHOUT_MATERIAL 0
@@ -52,9 +51,8 @@ typedef long long Bytes;
 #define TILE_UNLIT 2
 #define TILE_UNIFORM 3
 #define TILE_FLAT 4    // all blocks are flat: no depth terms
-#define TILE_SMOOTH 5  // all blocks are flat or smooth: no depth of taps
-#define TILE_CURVED 6
-#define TILE_REUSED 7  // nothing within reach has changed since the frame before
+#define TILE_CURVED 5
+#define TILE_REUSED 6  // nothing within reach has changed since the frame before
 
 // No tap of the vertical pass lies more columns than this from its pixel, unless it is rotated: see shear in
 // tap_tables.hpp.
@@ -117,6 +115,7 @@ struct FrameParams {
   float slope_y;
   float center_x;
   float center_y;
+  float aspect2;  // square of the height of a pixel over its width
   float albedo_mix;
   float widest_turn;  // how far a tap that is turned leaves its axis, px per px of its offset
 };
@@ -147,15 +146,15 @@ struct BlockParams {
 struct BlockPass {
   float px_per_mm;  // chooses the tap levels; 0 if nothing scatters
   int block_class;
-  int shear;     // of flat and smooth blocks in the vertical pass, px per row times 4096
-  int material;  // 1 + the index of the material if all taps fall on it, within the frame; else 0
+  int shear;     // of flat blocks in the vertical pass, px per row times 4096
+  int material;  // 1 + the index of the material if all taps fall on it within the frame, or on a curved block on
+                 // nothing else but gaps; else 0
 };
 
 // Classes of a block in a pass.
 #define CLASS_EMPTY -1  // no pixel has a material
 #define CLASS_FLAT 0
-#define CLASS_SMOOTH 1
-#define CLASS_CURVED 2
+#define CLASS_CURVED 1
 
 struct BlockPasses {
   struct BlockPass x, y;
@@ -166,7 +165,7 @@ struct ChoiceParams {
   int variant;
   int material;    // index
   int level;       // index
-  int weight;      // index of the first flat or smooth one
+  int weight;      // index of the first flat one
   int shear;       // as in BlockPass
   int padding[3];  // what follows in the memory of a tile has to be aligned
 };
@@ -174,18 +173,19 @@ struct ChoiceParams {
 // The block is empty, or all taps fall on its material and it is of that class, or taps may fall on anything.
 #define VARIANT_EMPTY CLASS_EMPTY
 #define VARIANT_FLAT CLASS_FLAT
-#define VARIANT_SMOOTH CLASS_SMOOTH
 #define VARIANT_CURVED CLASS_CURVED
-#define VARIANT_GENERAL 3
+#define VARIANT_GENERAL 2
 
 // Where the planes of a window begin, bytes: see window.h. The light comes first.
 struct WindowLayout {
   Bytes plane;  // elements of each
   Bytes segment;
   Bytes depth;
+  Bytes ray_depth;
   Bytes width;
   Bytes material;
   Bytes material_ids;
+  Bytes shear;
 };
 
 // A part of a frame in memory: see window.h.
@@ -216,13 +216,6 @@ struct TableParams {
   int last_bits;   // bits of the last node less first_bits
 };
 
-// A RadialTable. The padding puts the coefficients of a table into cache lines of their own.
-struct OctavesParams {
-  int first_bits;  // float bits of r^4 where the first octave begins
-  int padding[15];
-  float coefficients[3][3][OCTAVES];
-};
-
 // One material.
 struct MaterialParams {
   float radius_mm;  // of the taps
@@ -245,9 +238,9 @@ struct ProfileParams {
 struct TapTables {
   Bytes terms;
   Bytes offsets;
+  Bytes nearness;
   Bytes weights;
   Bytes flat_weights;
-  Bytes smooth_weights;
 };
 
 // One term of a kernel: scale f(x) f(y).
@@ -255,43 +248,36 @@ struct TermParams {
   float scale[3];
   float sum[3];
   int normalised;
-  int padding[9];
-  struct OctavesParams falloff;  // f(r)
-  struct OctavesParams centre;   // integral of f over |x| < r
 };
 
 // One tap level. Its weights are those of the centre, then of each pair; of every term each time.
 struct TapLevelParams {
   float px_per_mm;
-  float centre_half_width_px;
   int first_offset;
   int pairs;
   int channel_pairs[3];  // a channel has weights in so many pairs, the first ones; in none if its spread is below half
                          // a pixel
   int rotated_pairs;     // the first ones
+  int first_nearness;
   int first_weight;
   int first_flat_weight;  // of the first part
-  int first_smooth_weight;
   int last_offset_px;
 };
 
-// The weight of a pair of taps in one term, on a curved block. A centre tap has its gain in length_mm.
-struct WeightParams {
-  float length_mm[3];
-  float share[3];  // of its weight in the first term
+// As dermis::Nearness.
+struct NearnessParams {
+  float scale;
+  float softening;
 };
 
-// The weight of a centre tap or a pair in one term, on a flat block.
+// The weight of the centre or a pair in one term, on a curved block: dermis::CubicWeight.
+struct CubicWeight {
+  float a[3], b[3], c[3];
+};
+
+// The weight of the centre or a pair in one term, on a flat block.
 struct FlatWeight {
   float rgb[3];
-};
-
-// The weight of a centre tap or a pair in one term, on a smooth block: q and k of tap_tables.hpp times the last two are
-// added to the first, k with the sign of the offset.
-struct SmoothWeight {
-  float rgb[3];
-  float stretch[3];
-  float skew[3];
 };
 
 // Where the images of Shading lie.

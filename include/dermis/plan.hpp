@@ -164,7 +164,6 @@ enum class TileKind : std::uint8_t {
   unlit,             ///< skipped: no light within reach
   uniform,           ///< skipped: the same light everywhere within reach
   flat,              ///< filtered without depth terms
-  smooth,            ///< filtered without the depth of taps
   curved,            ///< filtered
   reused,            ///< skipped: nothing within reach has changed since the frame before
 };
@@ -176,7 +175,6 @@ inline constexpr std::array<Named<TileKind>, 8> word_table<TileKind> = {
      {TileKind::unlit, "unlit"},
      {TileKind::uniform, "uniform"},
      {TileKind::flat, "flat"},
-     {TileKind::smooth, "smooth"},
      {TileKind::curved, "curved"},
      {TileKind::reused, "reused"}}};
 
@@ -204,7 +202,6 @@ struct Stats {
   std::int64_t pixels_without_material = 0;
   std::int64_t pixels_narrow = 0;    ///< the kernel is narrower than half a pixel
   std::int64_t pixels_flat = 0;      ///< of those scattered, on blocks that need no depth terms in either pass
-  std::int64_t pixels_smooth = 0;    ///< of the others, on blocks that need not the depth of taps in either pass
   std::int64_t channels_narrow = 0;  ///< of pixels scattered whose block shows one material: spread below half a pixel
   std::int64_t pixels_bad = 0;       ///< light or albedo not finite; counted where tiles are filtered
   std::int64_t pixels_unlit = 0;     ///< of those scattered by discs: skipped, without light within reach

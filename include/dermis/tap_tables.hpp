@@ -20,8 +20,8 @@ struct Term {
 };
 
 /// How near a point of the surface is to a pixel, t = scale / (a + softening), where t = 1 at the distance at which the
-/// plane of the level has the tap. For a pair of taps a is (d / k)^2, mm^2, of the true distance d and the pixel's width
-/// factor k; for the centre it is s / k, mm, of the length of surface s that the pixel spans along the pass.
+/// plane of the level has the tap. For a pair of taps a is (d / k)^2, mm^2, of the true distance d and the pixel's
+/// width factor k; for the centre it is s / k, mm, of the length of surface s that the pixel spans along the pass.
 struct Nearness {
   float scale;
   float softening;
@@ -44,19 +44,19 @@ inline constexpr float least_centre_weight = 0x1p-20F;
 /// The taps for kernels of about one size in pixels. Weights are listed tap by tap, each tap with all its terms: the
 /// centre first, then the pairs by ascending offset.
 struct TapLevel {
-  float px_per_mm;                     ///< pixels per mm that the taps were placed for
-  std::vector<int> offsets_px;         ///< one pair of taps each, at + and - the offset; ascending, > 0
-  std::vector<Nearness> nearness;      ///< of the centre, then of the pairs
-  std::vector<CubicWeight> weights;    ///< on a curved block; 0 for the centre of a term that is not normalised
-  /// Weights on a flat block, for the kernel radius nearest to each eighth of the level. They are multiples of 2^-24; of
-  /// a normalised term they sum to exactly 1, and of no other is the centre's used.
+  float px_per_mm;                   ///< pixels per mm that the taps were placed for
+  std::vector<int> offsets_px;       ///< one pair of taps each, at + and - the offset; ascending, > 0
+  std::vector<Nearness> nearness;    ///< of the centre, then of the pairs
+  std::vector<CubicWeight> weights;  ///< on a curved block; 0 for the centre of a term that is not normalised
+  /// Weights on a flat block, for the kernel radius nearest to each eighth of the level. They are multiples of 2^-24;
+  /// of a normalised term they sum to exactly 1, and of no other is the centre's used.
   std::array<std::vector<std::array<float, 3>>, 8> flat_weights;
 };
 
 /// A profile as the separable passes read it: a level table of tap sets over kernel size, so that every tap lies on a
 /// whole pixel at any size of a pixel, with weights on a plane and by the true distance of surface points. METHODS.md,
-/// "The separable passes", says what the passes make of it: which level a block of 16 x 16 pixels takes, its class (flat
-/// or curved), the shear of the vertical pass, and the weights in each class.
+/// "The separable passes", says what the passes make of it: which level a block of 16 x 16 pixels takes, its class
+/// (flat or curved), the shear of the vertical pass, and the weights in each class.
 struct Taps {
   /// The radius, mm, beyond which the passes do not look: 99.9 % of the widest channel's marginal lie within for rank
   /// 1, 99.99 % for rank 2, 99.999 % for more.

@@ -86,57 +86,6 @@ static inline void store_bytes(global uchar* p, vint value) {
 // p is aligned to V floats. The store goes through a vector pointer, because PoCL splits vstore16 in four.
 FORCED_INLINE void store_floats(global float* p, vfloat value) { *(global vfloat*)p = value; }
 
-// A table has so many values.
-#define LOOKUP_SIZE 32
-
-#if V == 16 && defined(__AVX512F__)
-typedef float native_floats __attribute__((__vector_size__(64)));
-typedef int native_ints __attribute__((__vector_size__(64)));
-#elif V == 8 && defined(__AVX2__)
-typedef float native_floats __attribute__((__vector_size__(32)));
-typedef int native_ints __attribute__((__vector_size__(32)));
-#endif
-
-// Each lane looks up one of the LOOKUP_SIZE floats at p.
-FORCED_INLINE vfloat table_lookup(global const float* p, vint index) {
-#if V == 16 && defined(__AVX512F__)
-  const native_floats low = __builtin_astype(load_floats(p), native_floats);
-  const native_floats high = __builtin_astype(load_floats(p + V), native_floats);
-  return __builtin_astype(__builtin_ia32_vpermi2varps512(low, __builtin_astype(index, native_ints), high), float16);
-#elif V == 8 && defined(__AVX2__)
-  const native_ints lane = __builtin_astype(index, native_ints);
-  vfloat part[4];
-  for (int i = 0; i < 4; ++i) {
-    const native_floats eight = __builtin_astype(load_floats(p + V * i), native_floats);
-    part[i] = __builtin_astype(__builtin_ia32_permvarsf256(eight, lane), float8);
-  }
-  const vfloat low = select(part[0], part[1], (index & 8) != 0);
-  const vfloat high = select(part[2], part[3], (index & 8) != 0);
-  return select(low, high, (index & 16) != 0);
-#else
-  vfloat result;
-#define LOOKUP_LANE(lane) LANE(result, lane) = p[LANE(index, lane)];
-  EACH_LANE(LOOKUP_LANE)
-#undef LOOKUP_LANE
-  return result;
-#endif
-}
-
-// Each lane looks up one of the LOOKUP_SIZE bytes at p.
-FORCED_INLINE vint table_lookup_bytes(global const uchar* p, vint index) {
-#if V == 16 && defined(__AVX512F__)
-  const native_ints low = __builtin_astype(load_bytes(p), native_ints);
-  const native_ints high = __builtin_astype(load_bytes(p + V), native_ints);
-  return __builtin_astype(__builtin_ia32_vpermi2vard512(low, __builtin_astype(index, native_ints), high), int16);
-#else
-  vint result;
-#define LOOKUP_LANE(lane) LANE(result, lane) = p[LANE(index, lane)];
-  EACH_LANE(LOOKUP_LANE)
-#undef LOOKUP_LANE
-  return result;
-#endif
-}
-
 // The values are whole numbers.
 FORCED_INLINE vint convert_vint(vfloat value) {
 #if V == 1
@@ -151,38 +100,6 @@ FORCED_INLINE vfloat convert_vfloat(vint value) {
   return (float)value;
 #else
   return JOIN(convert_float, V)(value);
-#endif
-}
-
-#if V == 1
-static inline int lowest_lane(vint v) { return v; }
-static inline int highest_lane(vint v) { return v; }
-#else
-static inline int lowest_lane(vint v) {
-#if V == 16
-  const int8 eight = min(v.lo, v.hi);
-  const int4 four = min(eight.lo, eight.hi);
-#elif V == 8
-  const int4 four = min(v.lo, v.hi);
-#else
-  const int4 four = v;
-#endif
-  const int2 two = min(four.lo, four.hi);
-  return min(two.x, two.y);
-}
-
-static inline int highest_lane(vint v) { return -lowest_lane(-v); }
-#endif
-
-static inline vfloat lane_numbers(void) {
-#if V == 1
-  return 0.0f;
-#elif V == 4
-  return (float4)(0, 1, 2, 3);
-#elif V == 8
-  return (float8)(0, 1, 2, 3, 4, 5, 6, 7);
-#else
-  return (float16)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
 #endif
 }
 
@@ -215,6 +132,10 @@ FORCED_INLINE int any_bit(vint v) {
   return (two.x | two.y) != 0;
 #endif
 }
+
+// fmin and fmax of numbers, without their care for NaN.
+FORCED_INLINE vfloat lower(vfloat a, vfloat b) { return select(b, a, AS_MASK(a < b)); }
+FORCED_INLINE vfloat higher(vfloat a, vfloat b) { return select(b, a, AS_MASK(a > b)); }
 
 // Keeps the lanes where the mask is set and zeroes the others, even if they are not finite.
 FORCED_INLINE vfloat select_or_zero(vint mask, vfloat value) { return as_vfloat(as_vint(value) & mask); }

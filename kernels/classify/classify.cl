@@ -122,10 +122,6 @@ static inline void fetch_row_ahead(const struct FrameParams* f, const FrameInput
 // No surface is as deep: a block whose depth goes from minus to plus this counts as broken.
 #define BROKEN_MM 1e30f
 
-// fmin and fmax of numbers, without their care for NaN.
-FORCED_INLINE vfloat lower(vfloat a, vfloat b) { return select(b, a, AS_MASK(a < b)); }
-FORCED_INLINE vfloat higher(vfloat a, vfloat b) { return select(b, a, AS_MASK(a > b)); }
-
 typedef struct {
   vfloat low, high;
 } Range;
@@ -339,9 +335,6 @@ kernel void classify_blocks(struct FrameParams f, struct FrameLayouts layouts, g
 #ifndef FLATNESS
 #error "FLATNESS: see Taps in tap_tables.hpp"
 #endif
-#ifndef SMOOTHNESS
-#error "SMOOTHNESS: see Taps in tap_tables.hpp"
-#endif
 
 typedef struct {
   float low, high;
@@ -405,8 +398,7 @@ static inline int class_of(BlockView view, const DepthRange* range, float side, 
   const float slopes = along_px * (fabs(middle(range->along)) + half_range(range->along)) +
                        across_px * (fabs(middle(range->across)) + half_range(range->across));
   if (!(2.0f * dz <= slopes + sqrt(length2))) return CLASS_CURVED;
-  if (change2 <= FLATNESS * FLATNESS * length2) return CLASS_FLAT;
-  return change2 <= SMOOTHNESS * SMOOTHNESS * length2 ? CLASS_SMOOTH : CLASS_CURVED;
+  return change2 <= FLATNESS * FLATNESS * length2 ? CLASS_FLAT : CLASS_CURVED;
 }
 
 // The shear of the vertical pass in the middle of a block, columns per row times 4096: see shear_of. `view` is along y.
@@ -432,6 +424,19 @@ static inline int farthest_tap_of(global const struct BlockParams* block, global
   return farthest;
 }
 
+// 1 + the index of the only material of a block, 0 if it has none, or -1 if it has several or some pixel is narrow.
+static inline int only_material_of(global const struct BlockParams* block) {
+  if (block->narrow > 0) return -1;
+  int only = 0;
+  for (int i = 0; i < 4; ++i) {
+    const uint its = block->scattering[i];
+    if (its == 0) continue;
+    if (only != 0 || (its & (its - 1)) != 0) return -1;
+    only = 32 * i + 32 - clz(its);
+  }
+  return only;
+}
+
 // Some blocks of a frame.
 typedef struct {
   int x_begin, x_end;
@@ -449,20 +454,25 @@ static inline BlockBox blocks_around(const struct FrameParams* f, int block_x, i
   return box;
 }
 
-// 1 + the index of the material of all pixels within reach, all in the frame, or 0.
+// 1 + the index of the material of all pixels within reach, all in the frame, or 0. On a curved block there may be gaps
+// between pixels of the material.
 static inline int material_within(const struct FrameParams* f, global const struct BlockParams* blocks, int block_x,
-                                  int block_y, int axis, int along_px, int across_px) {
+                                  int block_y, int axis, int along_px, int across_px, int block_class) {
   const int x_px = axis == 0 ? along_px : across_px;
   const int y_px = axis == 0 ? across_px : along_px;
   if (block_x * BLOCK < x_px || block_x * BLOCK + BLOCK - 1 + x_px >= f->width || block_y * BLOCK < y_px ||
       block_y * BLOCK + BLOCK - 1 + y_px >= f->height) {
     return 0;
   }
-  const int material = blocks[block_y * f->blocks_x + block_x].material;
   const BlockBox box = blocks_around(f, block_x, block_y, axis, along_px, across_px);
+  int material = 0;
   for (int y = box.y_begin; y < box.y_end; ++y) {
     for (int x = box.x_begin; x < box.x_end; ++x) {
-      if (blocks[y * f->blocks_x + x].material != material) return 0;
+      global const struct BlockParams* its = blocks + y * f->blocks_x + x;
+      const int its_material = block_class == CLASS_CURVED ? only_material_of(its) : its->material;
+      if (block_class == CLASS_CURVED && its_material == 0) continue;
+      if (its_material <= 0 || (material > 0 && its_material != material)) return 0;
+      material = its_material;
     }
   }
   return material;
@@ -482,15 +492,17 @@ static inline struct BlockPass pass_over(const struct FrameParams* f, global con
 #if !HAS_DEPTH && !HAS_MATTE && !PIXEL_WIDTH && !JITTER
   pass.block_class = CLASS_FLAT;
 #elif !PIXEL_WIDTH && !JITTER
-  // Flat and smooth blocks may have a few more pixels per mm.
+  // A flat block may have a few more pixels per mm.
   const int farthest_px = farthest_tap_of(own, materials, levels, pass.px_per_mm, CLASS_CURVED);
   const int reach_px = min(farthest_px + farthest_px / 8, max(f->width, f->height));
   const Interval nothing = {INFINITY, -INFINITY};
   const DepthRange unseen = {nothing, nothing, nothing};
   const BlockView view = view_of(f, block_x, block_y, axis);
-  DepthRange within_block = unseen;
-  join_block(&within_block, own, axis);
-  if (SHEARED && axis == 1) pass.shear = shear_of_block(view, &within_block);
+  if (SHEARED && axis == 1) {
+    DepthRange within_block = unseen;
+    join_block(&within_block, own, axis);
+    pass.shear = shear_of_block(view, &within_block);
+  }
   const int side_px = side_of(abs(pass.shear), reach_px);
   if (side_px == 0) pass.shear = 0;
   const BlockBox box = blocks_around(f, block_x, block_y, axis, reach_px, side_px);
@@ -504,20 +516,17 @@ static inline struct BlockPass pass_over(const struct FrameParams* f, global con
   pass.block_class = class_of(view, &within_reach, side, axis == 0 ? x_px : y_px, axis == 0 ? y_px : x_px);
   if (pass.block_class == CLASS_FLAT) {
     pass.px_per_mm = 1.0f / sqrt(squared_tangent(view, &within_reach, side));
-  } else if (pass.block_class == CLASS_SMOOTH) {
-    pass.px_per_mm = 1.0f / sqrt(squared_tangent(view, &within_block, side));
   } else {
     pass.shear = 0;
   }
 #endif
-  // A smooth block looks at the next pixel even without taps.
-  const int taps_px = max(farthest_tap_of(own, materials, levels, pass.px_per_mm, pass.block_class), 1);
+  const int taps_px = farthest_tap_of(own, materials, levels, pass.px_per_mm, pass.block_class);
   int across_px = 0;
 #if SHEARED
   if (axis == 1 && pass.block_class == CLASS_CURVED) across_px = min(taps_px, MOST_SIDE);
-  if (pass.shear != 0) across_px = max(side_of(abs(pass.shear), taps_px), 1);
+  if (pass.shear != 0) across_px = side_of(abs(pass.shear), taps_px);
 #endif
-  pass.material = material_within(f, blocks, block_x, block_y, axis, taps_px, across_px);
+  pass.material = material_within(f, blocks, block_x, block_y, axis, taps_px, across_px, pass.block_class);
   return pass;
 }
 
@@ -541,7 +550,6 @@ kernel void choose_passes(struct FrameParams f, int blocks_per_item, global cons
   int scattered = 0;
   int narrow = 0;
   int flat = 0;
-  int smooth = 0;
   int channels = 0;
   int reach = 0;
   for (int block_x = first; block_x < min(first + blocks_per_item, f.blocks_x); ++block_x) {
@@ -556,12 +564,10 @@ kernel void choose_passes(struct FrameParams f, int blocks_per_item, global cons
                                               channels_left_alone(materials, levels, blocks + block, passes[block].y));
     const int block_class = max(passes[block].x.block_class, passes[block].y.block_class);
     if (block_class == CLASS_FLAT) flat += blocks[block].scattered;
-    if (block_class == CLASS_SMOOTH) smooth += blocks[block].scattered;
   }
   atomic_add(counters + COUNTER_SCATTERED, scattered);
   atomic_add(counters + COUNTER_NARROW, narrow);
   atomic_add(counters + COUNTER_FLAT, flat);
-  atomic_add(counters + COUNTER_SMOOTH, smooth);
   atomic_add(counters + COUNTER_CHANNELS, channels);
   atomic_max(counters + COUNTER_REACH, reach);
 }

@@ -2,6 +2,7 @@
 #include "frame/coverage.h"
 #include "frame/inputs.h"
 #include "frame/light.h"
+#include "frame/surface.h"
 #include "frame/window.h"
 
 // The light that a method scatters.
@@ -29,10 +30,13 @@ FORCED_INLINE void load_surface(const Window* w, const struct FrameParams* f, co
   const vint m = load_bytes(rows->material_ids + x);
   store_bytes(w->material_ids + at, m);
 #if HAS_DEPTH
-  const vfloat z = read_values(rows->depth, x) * f->mm_per_unit;
-  store_floats(w->depth + at, select((vfloat)(1.0f), z, AS_MASK(m != 0)));
+  const vfloat z = select((vfloat)(1.0f), read_values(rows->depth, x) * f->mm_per_unit, AS_MASK(m != 0));
+  const Points p = points_at(f, z, x, y);
+  store_floats(w->depth + at, z);
+  store_floats(w->ray_depth + at, z * fma(p.x_per_z, p.x_per_z, fma(p.y_per_z, p.y_per_z, (vfloat)(1.0f))));
 #else
   store_floats(w->depth + at, (vfloat)(0.0f));
+  store_floats(w->ray_depth + at, (vfloat)(0.0f));
 #endif
 #if PIXEL_WIDTH
   vfloat mask = (vfloat)(1.0f);

@@ -12,7 +12,7 @@ typedef struct {
 FORCED_INLINE Points points_at(const struct FrameParams* f, vfloat depth, int x, int y) {
   Points p;
   p.z = depth;
-  p.x_per_z = f->slope_x * (lane_numbers() + ((float)x + 0.5f - f->center_x));
+  p.x_per_z = f->slope_x * (convert_vfloat(x + int_lane_numbers()) + 0.5f - f->center_x);
   p.y_per_z = (vfloat)(f->slope_y * ((float)y + 0.5f - f->center_y));
   return p;
 }
@@ -23,25 +23,4 @@ FORCED_INLINE vfloat squared_distance(const struct FrameParams* f, const Points*
   const vfloat delta_x = fma(p->x_per_z, delta_z, dx * fma(z, (vfloat)(f->slope_x), (vfloat)(f->mm_per_px_x)));
   const vfloat delta_y = fma(p->y_per_z, delta_z, dy * fma(z, (vfloat)(f->slope_y), (vfloat)(f->mm_per_px_y)));
   return fma(delta_x, delta_x, fma(delta_y, delta_y, delta_z * delta_z));
-}
-
-// Squared true distance to points of the row that lies `offset` pixels below, each of them `side` columns to the side
-// of its pixel. Side 0 gives the bits of squared_distance_along.
-FORCED_INLINE vfloat squared_distance_vertical(const struct FrameParams* f, const Points* p, vfloat z, vfloat side,
-                                               float offset) {
-  const vfloat delta_z = z - p->z;
-  const vfloat down = fma(p->y_per_z, delta_z, offset * fma(z, (vfloat)(f->slope_y), (vfloat)(f->mm_per_px_y)));
-  const vfloat across = fma(p->x_per_z, delta_z, side * fma(z, (vfloat)(f->slope_x), (vfloat)(f->mm_per_px_x)));
-  return fma(down, down, fma(across, across, delta_z * delta_z));
-}
-
-// Squared true distance to points that lie `offset` pixels away along one axis.
-FORCED_INLINE vfloat squared_distance_along(const struct FrameParams* f, const Points* p, vfloat z, float offset,
-                                            int axis) {
-  const vfloat delta_z = z - p->z;
-  const vfloat along = axis == 0
-                           ? fma(p->x_per_z, delta_z, offset * fma(z, (vfloat)(f->slope_x), (vfloat)(f->mm_per_px_x)))
-                           : fma(p->y_per_z, delta_z, offset * fma(z, (vfloat)(f->slope_y), (vfloat)(f->mm_per_px_y)));
-  const vfloat across = (axis == 0 ? p->y_per_z : p->x_per_z) * delta_z;
-  return fma(along, along, fma(across, across, delta_z * delta_z));
 }

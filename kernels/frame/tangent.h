@@ -1,5 +1,4 @@
 // Changes of depth and position from pixel to pixel along a surface.
-#include "frame/shear.h"
 #include "frame/surface.h"
 #include "frame/window.h"
 
@@ -45,36 +44,4 @@ static inline vfloat squared_length(Tangent t) { return fma(t.x, t.x, fma(t.y, t
 static inline vfloat patch_area(Tangent x, Tangent y) {
   const Tangent normal = {x.y * y.z - x.z * y.y, x.z * y.x - x.x * y.z, x.x * y.y - x.y * y.x};
   return sqrt(squared_length(normal));
-}
-
-#if SHEARED
-// The shear, in columns per row, that is at a right angle to (1, 0) on the surface.
-static inline vfloat shear_of(Tangent x, Tangent y) {
-  const vfloat shear = -fma(x.x, y.x, fma(x.y, y.y, x.z * y.z)) / squared_length(x);
-  // It is not a number where lengths underflow.
-  return select_or_zero(AS_MASK(fabs(shear) < INFINITY), clamp(shear, (vfloat)(-1.0f), (vfloat)(1.0f)));
-}
-
-// The shear of V pixels, in columns per row times 4096.
-static inline vint shear_at(const struct FrameParams* f, const Window* w, int x, int y) {
-  const Points p = points_at(f, load_floats(w->depth + pixel_at(w, x, y)), x, y);
-  const Tangent along_x = tangent_x(f, &p, depth_slope(f, w, x, y, 1, 0));
-  const Tangent along_y = tangent_y(f, &p, depth_slope(f, w, x, y, 0, 1));
-  return convert_vint(rint(4096.0f * shear_of(along_x, along_y)));
-}
-#endif
-
-// The length of surface that each pixel spans along a pass, mm.
-SHARED vfloat segment_length(const struct FrameParams* f, const Window* w, int x, int y, int axis) {
-  const Points p = points_at(f, load_floats(w->depth + pixel_at(w, x, y)), x, y);
-  if (axis == 0) return sqrt(squared_length(tangent_x(f, &p, depth_slope(f, w, x, y, 1, 0))));
-  Tangent along = tangent_y(f, &p, depth_slope(f, w, x, y, 0, 1));
-#if SHEARED
-  const Tangent along_x = tangent_x(f, &p, depth_slope(f, w, x, y, 1, 0));
-  const vfloat shear = shear_of(along_x, along);
-  along.x = fma(shear, along_x.x, along.x);
-  along.y = fma(shear, along_x.y, along.y);
-  along.z = fma(shear, along_x.z, along.z);
-#endif
-  return sqrt(squared_length(along));
 }

@@ -14,9 +14,11 @@ typedef struct {
   global float* light;         // 3 planes for each term
   global float* segment;       // length of surface that a pixel spans along the pass, mm
   global float* depth;         // mm
+  global float* ray_depth;     // mm, times the squared length of the ray to unit depth
   global float* width;         // factor of the profile's width, 3 planes; there if PIXEL_WIDTH
   global uchar* material;      // as in material_ids, but 0 where the light is not finite
   global uchar* material_ids;  // as classification wrote it
+  global int* shear;           // of the vertical pass over curved blocks, of each run of SHEAR_RUN pixels
 } Window;
 
 static inline Window window_in(const struct WindowParams* p, global uchar* memory) {
@@ -30,9 +32,11 @@ static inline Window window_in(const struct WindowParams* p, global uchar* memor
                     (global float*)memory,
                     (global float*)(memory + p->planes.segment),
                     (global float*)(memory + p->planes.depth),
+                    (global float*)(memory + p->planes.ray_depth),
                     (global float*)(memory + p->planes.width),
                     memory + p->planes.material,
-                    memory + p->planes.material_ids};
+                    memory + p->planes.material_ids,
+                    (global int*)(memory + p->planes.shear)};
   return w;
 }
 

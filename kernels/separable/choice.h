@@ -15,7 +15,7 @@ static inline struct ChoiceParams choice_of(const struct FrameParams* f, const T
   choice.shear = pass.shear;
   choice.level = its->first_level + step.level;
   global const struct TapLevelParams* level = tables->levels + choice.level;
-  choice.weight = pass.block_class == CLASS_FLAT ? first_flat_weight(level, step.part) : level->first_smooth_weight;
+  if (pass.block_class == CLASS_FLAT) choice.weight = first_flat_weight(level, step.part);
   return choice;
 }
 

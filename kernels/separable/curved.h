@@ -1,178 +1,207 @@
-// Curved blocks: weights by the true distance of surface points. See Taps in tap_tables.hpp.
+// Curved blocks: weights by the true distance of surface points, as cubics of nearness. See Taps in tap_tables.hpp.
 #include "base/rotation.h"
-#include "frame/tangent.h"
-#include "separable/octaves.h"
+#include "frame/shear.h"
+#include "frame/surface.h"
 #include "separable/pass.h"
 
-// The lanes of one material on a curved surface, as every tap needs them.
+// The V pixels of a row lie in so many runs of one shear.
+#define SHEAR_RUNS (V > SHEAR_RUN ? V / SHEAR_RUN : 1)
+
+#if V > SHEAR_RUN
+typedef JOIN(float, SHEAR_RUN) run_floats __attribute__((aligned(4)));
+typedef JOIN(uchar, SHEAR_RUN) run_bytes __attribute__((aligned(1)));
+#endif
+
+// What every tap of V pixels needs to know of them.
 typedef struct {
-  Points points;
-  vint material;    // 1 + its index, the same in all lanes
-  vrgb reciprocal;  // of the width factor
-  float px_per_mm;  // of the level
-  global const struct TermParams* terms;
+  vfloat z, ray_depth;
+  vfloat spread;     // by how much mm^2 the square of a pixel's width grows with depth, at that depth
+  vrgb reciprocal;   // of the width factor
+  float square_mm2;  // the square of a pixel's width in front of an orthographic camera
 } Target;
+
+// Where taps lie, run by run, and the square of their offset, in widths of a pixel.
+typedef struct {
+  size_t at[SHEAR_RUNS];
+  vfloat offset2;
+} Place;
 
 // The surface and the light under a tap of each lane.
 typedef struct {
-  vfloat r_squared;  // its true distance, mm^2
-  vfloat segment;    // length of surface, mm; 0 where there is none to weigh
+  vfloat z, ray_depth, segment;
   vrgb light[TERMS];
 } Tap;
 
-// Adds a tap of each lane to the sums.
-FORCED_INLINE void add_taps(Sums* sums, const Target* target, global const struct WeightParams* its, const Tap* tap) {
-  const vfloat stretch = target->px_per_mm * tap->segment;
-  const vrgb length = times(target->reciprocal, stretch);
-  const vrgb distance = times(product(target->reciprocal, target->reciprocal), tap->r_squared);  // squared, over k^2
-  vrgb first;
+FORCED_INLINE vfloat load_tap(global const float* plane, const Place* place) {
+#if V > SHEAR_RUN
+  const vfloat value = {*(global const run_floats*)(plane + place->at[0]),
+                        *(global const run_floats*)(plane + place->at[1])};
+  return value;
+#else
+  return load_floats(plane + place->at[0]);
+#endif
+}
+
+FORCED_INLINE vint load_tap_bytes(global const uchar* plane, const Place* place) {
+#if V > SHEAR_RUN
+  const JOIN(uchar, V)
+      value = {*(global const run_bytes*)(plane + place->at[0]), *(global const run_bytes*)(plane + place->at[1])};
+  return JOIN(convert_int, V)(value);
+#else
+  return load_bytes(plane + place->at[0]);
+#endif
+}
+
+FORCED_INLINE vrgb load_tap_light(const Pass* s, int t, const Place* place) {
+  global const float* plane = s->from->light + t * s->next_light;
+  const vrgb value = {load_tap(plane, place), load_tap(plane + s->from->plane, place),
+                      load_tap(plane + 2 * s->from->plane, place)};
+  return value;
+}
+
+FORCED_INLINE vrgb cubic(global const struct CubicWeight* its, vrgb t) {
+  const vrgb result = {t.r * fma(t.r, fma(t.r, (vfloat)(its->c[0]), (vfloat)(its->b[0])), (vfloat)(its->a[0])),
+                       t.g * fma(t.g, fma(t.g, (vfloat)(its->c[1]), (vfloat)(its->b[1])), (vfloat)(its->a[1])),
+                       t.b * fma(t.b, fma(t.b, (vfloat)(its->c[2]), (vfloat)(its->b[2])), (vfloat)(its->a[2]))};
+  return result;
+}
+
+// The same times a length, and of one nearness for all channels.
+FORCED_INLINE vrgb cubic_times(global const struct CubicWeight* its, vfloat t, vfloat length) {
+  const vfloat share = t * length;
+  const vrgb result = {share * fma(t, fma(t, (vfloat)(its->c[0]), (vfloat)(its->b[0])), (vfloat)(its->a[0])),
+                       share * fma(t, fma(t, (vfloat)(its->c[1]), (vfloat)(its->b[1])), (vfloat)(its->a[1])),
+                       share * fma(t, fma(t, (vfloat)(its->c[2]), (vfloat)(its->b[2])), (vfloat)(its->a[2]))};
+  return result;
+}
+
+// Adds a tap of each lane to the sums. `clean`: it lies on the material or in a gap, else only the lanes `there` count.
+FORCED_INLINE void add_tap(Sums* sums, const Target* own, global const struct NearnessParams* nearness,
+                           global const struct CubicWeight* weights, const Tap* tap, vfloat offset2, vint there,
+                           const int clean) {
+  // The square of the distance, see METHODS.md, plus the softening.
+  const vfloat square = fma(own->spread, tap->z, (vfloat)(own->square_mm2));
+#if PIXEL_WIDTH
+  const vfloat distance2 =
+      higher(fma(offset2, square, (tap->z - own->z) * (tap->ray_depth - own->ray_depth)), (vfloat)(0.0f));
+  const vrgb k = own->reciprocal;
+  vrgb t = {nearness->scale / fma(distance2, k.r * k.r, (vfloat)(nearness->softening)),
+            nearness->scale / fma(distance2, k.g * k.g, (vfloat)(nearness->softening)),
+            nearness->scale / fma(distance2, k.b * k.b, (vfloat)(nearness->softening))};
+  if (!clean) t = select_or_zero_rgb(there, t);
+  const vrgb length = times(k, clean ? tap->segment : select_or_zero(there, tap->segment));
+#else
+  const vfloat softening = (vfloat)(nearness->softening);
+  const vfloat softened =
+      higher(fma(offset2, square, fma(tap->z - own->z, tap->ray_depth - own->ray_depth, softening)), softening);
+  vfloat t = nearness->scale / softened;
+  if (!clean) t = select_or_zero(there, t);
+  const vfloat length = clean ? tap->segment : select_or_zero(there, tap->segment);
+#endif
 #pragma unroll
-  for (int t = 0; t < TERMS; ++t) {
-    const vrgb falloff = look_up(&target->terms[t].falloff, distance);
-    vrgb weight = product(scaled(its[t].length_mm, falloff), length);
-    if (t == 0) {
-      first = weight;
-    } else {
-      weight.r = fma(its[t].share[0], first.r, weight.r);
-      weight.g = fma(its[t].share[1], first.g, weight.g);
-      weight.b = fma(its[t].share[2], first.b, weight.b);
-    }
-    sums->light[t] = multiply_add(weight, tap->light[t], sums->light[t]);
-    sums->weight[t] = sum_rgb(sums->weight[t], weight);
+  for (int i = 0; i < TERMS; ++i) {
+#if PIXEL_WIDTH
+    const vrgb weight = product(cubic(weights + i, t), length);
+#else
+    const vrgb weight = cubic_times(weights + i, t, length);
+#endif
+    const vrgb light = clean ? tap->light[i] : select_or_zero_rgb(there, tap->light[i]);
+    sums->light[i] = multiply_add(weight, light, sums->light[i]);
+    sums->weight[i] = sum_rgb(sums->weight[i], weight);
   }
 }
 
-// The shear of the vertical pass, columns per row times 4096. `low` and `high` are those of the lanes of a material.
-typedef struct {
-  vint lanes;
-  int low, high;
-} Shears;
-
-FORCED_INLINE Shears shears_at(const struct FrameParams* f, const Pass* s, vint material, int x, int y) {
-  Shears shears = {(vint)(0), 0, 0};
-#if SHEARED
-  if (s->axis == 0) return shears;
-  const vint mine = AS_MASK((load_bytes(s->from->material_ids + pixel_at(s->from, x, y)) & MATERIAL_MASK) == material);
-  shears.lanes = shear_at(f, s->from, x, y);
-  shears.low = lowest_lane(select((vint)(INT_MAX), shears.lanes, mine));
-  shears.high = highest_lane(select((vint)(-INT_MAX), shears.lanes, mine));
-#endif
-  return shears;
-}
-
-#if SHEARED
-// Loads the pixels so many rows away, each lane with its own side, of one run of LOOKUP_SIZE pixels. Returns whether
-// there is another run.
-FORCED_INLINE int load_sheared(Tap* tap, const struct FrameParams* f, const Pass* s, const Target* target,
-                               const Shears* shears, int x, int y, int offset, int run, const int clean) {
+// Adds the pixels an offset away along the pass. `shear`: of each run of lanes, of the vertical pass.
+FORCED_INLINE void add_shifted(Sums* sums, const struct FrameParams* f, const Pass* s, const Target* own,
+                               global const struct NearnessParams* nearness, global const struct CubicWeight* weights,
+                               vint material, const int* shear, int x, int y, int offset, const int clean) {
   const Window* w = s->from;
-  const vint side = sides_of(shears->lanes, offset);
-  const vint to_x = x + int_lane_numbers() + side;
-  const int one_end = side_of(shears->low, offset);
-  const int other_end = side_of(shears->high, offset);
-  const int from = x + min(one_end, other_end) + run * LOOKUP_SIZE;
-  // There is no memory beyond the window.
-  const int begin = clamp(from, w->x_begin - PADDING, w->x_end + PADDING - LOOKUP_SIZE);
-  const vint index = (to_x - begin) & (LOOKUP_SIZE - 1);
-  const size_t at = pixel_at(w, begin, y + offset);
-  const int has_more = from + LOOKUP_SIZE < x + V + max(one_end, other_end);
-  tap->segment = table_lookup(w->segment + at, index);
-  tap->r_squared = squared_distance_vertical(f, &target->points, table_lookup(w->depth + at, index),
-                                             convert_vfloat(side), (float)offset);
+  Place place;
+  vint there = (vint)(-1);
+  if (s->axis == 0) {
+    if (!clean && (x + offset <= -V || x + offset >= f->width)) return;
+    for (int i = 0; i < SHEAR_RUNS; ++i) place.at[i] = pixel_at(w, x + offset, y) + i * SHEAR_RUN;
+    place.offset2 = (vfloat)((float)(offset * offset));
+  } else {
+    if (!clean && (y + offset < 0 || y + offset >= f->height)) return;
+    const float along2 = f->aspect2 * (float)(offset * offset);
+#if SHEARED
+    int side[SHEAR_RUNS];
+    float offset2[SHEAR_RUNS];
+    for (int i = 0; i < SHEAR_RUNS; ++i) {
+      side[i] = side_of(shear[i], offset);
+      offset2[i] = (float)(side[i] * side[i]) + along2;
+      const int to_x = x + i * SHEAR_RUN + side[i];
+      // There is no memory beyond the window.
+      place.at[i] =
+          clean ? (size_t)(s->places.row_at[y + offset] + to_x)
+                : pixel_at(w, clamp(to_x, w->x_begin - PADDING, w->x_end + PADDING - min(V, SHEAR_RUN)), y + offset);
+    }
+#if V > SHEAR_RUN
+    place.offset2.lo = (JOIN(float, SHEAR_RUN))(offset2[0]);
+    place.offset2.hi = (JOIN(float, SHEAR_RUN))(offset2[1]);
+    vint sides;
+    sides.lo = (JOIN(int, SHEAR_RUN))(side[0]);
+    sides.hi = (JOIN(int, SHEAR_RUN))(side[1]);
+#else
+    place.offset2 = (vfloat)(offset2[0]);
+    const vint sides = (vint)(side[0]);
+#endif
+    if (!clean) {
+      const vint to_x = x + int_lane_numbers() + sides;
+      there = AS_MASK(to_x >= 0) & AS_MASK(to_x < f->width);
+    }
+#else
+    for (int i = 0; i < SHEAR_RUNS; ++i) {
+      place.at[i] = (clean ? (size_t)(s->places.row_at[y + offset] + x) : pixel_at(w, x, y + offset)) + i * SHEAR_RUN;
+    }
+    place.offset2 = (vfloat)(along2);
+#endif
+  }
+  if (!clean) there &= AS_MASK((load_tap_bytes(w->material, &place) & MATERIAL_MASK) == material);
+  Tap tap = {load_tap(w->depth, &place), load_tap(w->ray_depth, &place), load_tap(w->segment, &place)};
 #pragma unroll
   for (int t = 0; t < TERMS; ++t) {
-    global const float* its_light = w->light + t * s->next_light + at;
-    tap->light[t].r = table_lookup(its_light, index);
-    tap->light[t].g = table_lookup(its_light + w->plane, index);
-    tap->light[t].b = table_lookup(its_light + 2 * w->plane, index);
+    tap.light[t] = t == 0 || s->axis == 1 ? load_tap_light(s, t, &place) : tap.light[0];
   }
-  if (!clean || run > 0 || has_more) {
-    vint there = AS_MASK(to_x >= from) & AS_MASK(to_x < from + LOOKUP_SIZE);
-    if (!clean) {
-      there &= AS_MASK(to_x >= 0) & AS_MASK(to_x < f->width) &
-               AS_MASK((table_lookup_bytes(w->material + at, index) & MATERIAL_MASK) == target->material);
-    }
-    tap->segment = select_or_zero(there, tap->segment);
-    for (int t = 0; t < TERMS; ++t) tap->light[t] = select_or_zero_rgb(there, tap->light[t]);
-  }
-  return has_more;
-}
-#endif
-
-// Adds the pixels an offset away along the pass. `clean`: they are of the material. Returns whether some lanes have
-// theirs in another run, which is to be added next.
-FORCED_INLINE int add_tap(Sums* sums, const struct FrameParams* f, const Pass* s, const Target* target,
-                          global const struct WeightParams* its, const Shears* shears, int x, int y, int offset,
-                          int run, const int clean) {
-  Tap tap;
-  int has_more = 0;
-  if (!clean && s->axis == 1 && (y + offset < 0 || y + offset >= f->height)) return 0;
-  const int side = s->axis == 0 ? 0 : side_of(shears->low, offset);
-#if SHEARED
-  if (s->axis == 1 && side != side_of(shears->high, offset)) {
-    has_more = load_sheared(&tap, f, s, target, shears, x, y, offset, run, clean);
-  } else
-#endif
-  {
-    const int to_x = s->axis == 0 ? x + offset : x + side;
-    if (!clean && (to_x <= -V || to_x >= f->width)) return 0;
-    const size_t at = pixel_at(s->from, to_x, y + s->y_step * offset);
-    tap.segment = load_floats(s->from->segment + at);
-    const vfloat z = load_floats(s->from->depth + at);
-    tap.r_squared = side == 0 ? squared_distance_along(f, &target->points, z, (float)offset, s->axis)
-                              : squared_distance_vertical(f, &target->points, z, (vfloat)((float)side), (float)offset);
-#pragma unroll
-    for (int t = 0; t < TERMS; ++t) tap.light[t] = load_term(s, t, at);
-    if (!clean) {
-      // Elsewhere there is no surface to weigh. The light there is finite, but beyond the frame.
-      vint there = AS_MASK((load_bytes(s->from->material + at) & MATERIAL_MASK) == target->material);
-      if (side != 0) {
-        there &= AS_MASK(to_x + int_lane_numbers() >= 0) & AS_MASK(to_x + int_lane_numbers() < f->width);
-        for (int t = 0; t < TERMS; ++t) tap.light[t] = select_or_zero_rgb(there, tap.light[t]);
-      }
-      tap.segment = select_or_zero(there, tap.segment);
-    }
-  }
-  add_taps(sums, target, its, &tap);
-  return has_more;
+  add_tap(sums, own, nearness, weights, &tap, place.offset2, there, clean);
 }
 
 #if JITTER
 // Adds the pixels (dx, dy) away, different for each lane.
-FORCED_INLINE void add_rotated(Sums* sums, const struct FrameParams* f, const Pass* s, const Target* target,
-                               global const struct WeightParams* its, int x, int y, vint dx, vint dy) {
-  const vint qx = x + int_lane_numbers() + dx;
-  const vint qy = y + dy;
+FORCED_INLINE void add_rotated(Sums* sums, const struct FrameParams* f, const Pass* s, const Target* own,
+                               global const struct NearnessParams* nearness, global const struct CubicWeight* weights,
+                               vint material, int x, int y, vint dx, vint dy) {
+  const Window* w = s->from;
+  const vint to_x = x + int_lane_numbers() + dx;
+  const vint to_y = y + dy;
   Tap tap;
-  vfloat z, fx, fy;
   vint m;
-#define READ_LANE(lane)                                                                                                \
-  {                                                                                                                    \
-    const int inside = LANE(qx, lane) >= max(s->from->x_begin, 0) && LANE(qx, lane) < min(s->from->x_end, f->width) && \
-                       LANE(qy, lane) >= s->from->y_begin && LANE(qy, lane) < s->from->y_end;                          \
-    const size_t at = pixel_at(s->from, inside ? LANE(qx, lane) : x, inside ? LANE(qy, lane) : y);                     \
-    LANE(z, lane) = s->from->depth[at];                                                                                \
-    LANE(tap.segment, lane) = s->from->segment[at];                                                                    \
-    LANE(m, lane) = inside ? s->from->material[at] : 0;                                                                \
-    LANE(fx, lane) = (float)LANE(dx, lane);                                                                            \
-    LANE(fy, lane) = (float)LANE(dy, lane);                                                                            \
-    for (int t = 0; t < TERMS; ++t) {                                                                                  \
-      global const float* its_light = s->from->light + t * s->next_light + at;                                         \
-      LANE(tap.light[t].r, lane) = its_light[0];                                                                       \
-      LANE(tap.light[t].g, lane) = its_light[s->from->plane];                                                          \
-      LANE(tap.light[t].b, lane) = its_light[2 * s->from->plane];                                                      \
-    }                                                                                                                  \
+#define READ_LANE(lane)                                                                                        \
+  {                                                                                                            \
+    const int inside = LANE(to_x, lane) >= max(w->x_begin, 0) && LANE(to_x, lane) < min(w->x_end, f->width) && \
+                       LANE(to_y, lane) >= w->y_begin && LANE(to_y, lane) < w->y_end;                          \
+    const size_t at = pixel_at(w, inside ? LANE(to_x, lane) : x, inside ? LANE(to_y, lane) : y);               \
+    LANE(tap.z, lane) = w->depth[at];                                                                          \
+    LANE(tap.ray_depth, lane) = w->ray_depth[at];                                                              \
+    LANE(tap.segment, lane) = w->segment[at];                                                                  \
+    LANE(m, lane) = inside ? w->material[at] : 0;                                                              \
+    for (int t = 0; t < TERMS; ++t) {                                                                          \
+      global const float* its_light = w->light + t * s->next_light + at;                                       \
+      LANE(tap.light[t].r, lane) = its_light[0];                                                               \
+      LANE(tap.light[t].g, lane) = its_light[w->plane];                                                        \
+      LANE(tap.light[t].b, lane) = its_light[2 * w->plane];                                                    \
+    }                                                                                                          \
   }
   EACH_LANE(READ_LANE)
 #undef READ_LANE
-  const vint same = AS_MASK((m & MATERIAL_MASK) == target->material);
-  for (int t = 0; t < TERMS; ++t) tap.light[t] = select_or_zero_rgb(same, tap.light[t]);
-  tap.segment = select_or_zero(same, tap.segment);
-  tap.r_squared = squared_distance(f, &target->points, z, fx, fy);
-  add_taps(sums, target, its, &tap);
+  const vfloat fx = convert_vfloat(dx);
+  const vfloat fy = convert_vfloat(dy);
+  add_tap(sums, own, nearness, weights, &tap, fma(fx, fx, f->aspect2 * fy * fy),
+          AS_MASK((m & MATERIAL_MASK) == material), 0);
 }
 
-// Turns the axis of the pass by the angle of each lane. The result is in 1/4096 px per px.
+// The axis of the rotated taps of each lane.
 FORCED_INLINE void rotated_axis(global const struct RotationParams* rotations, vint index, int axis, vint* dx,
                                 vint* dy) {
 #define READ_LANE(lane)                                           \
@@ -186,36 +215,39 @@ FORCED_INLINE void rotated_axis(global const struct RotationParams* rotations, v
 }
 #endif
 
-// Taps of a pair follow each other, the one before the pixel first.
-FORCED_INLINE int offset_of(global const int* offsets, int tap) {
-  const int offset = offsets[tap / 2];
-  return tap % 2 == 0 ? -offset : offset;
-}
-
-// Scatters the lanes of one material on a curved surface. `clean`: all taps fall on it.
+// Scatters the lanes of one material on a curved surface. `clean`: all taps fall on it or into gaps, where there is no
+// length of surface.
 FORCED_INLINE void scatter_curved(vrgb* result, const struct FrameParams* f, const Pass* s, const Tables* tables,
                                   global const struct TapLevelParams* level, global const struct TermParams* terms,
                                   vint material, int x, int y, const int clean) {
   const size_t at = pixel_at(s->from, x, y);
-  global const struct WeightParams* weights = tables->weights + level->first_weight;
+  global const struct NearnessParams* nearness = tables->nearness + level->first_nearness;
+  global const struct CubicWeight* weights = tables->weights + level->first_weight;
   global const int* offsets = tables->offsets + level->first_offset;
-  Target target;
-  target.points = points_at(f, load_floats(s->from->depth + at), x, y);
-  target.material = material;
-  target.reciprocal = width_reciprocal(s->from, at);
-  target.px_per_mm = level->px_per_mm;
-  target.terms = terms;
-  const vfloat centre_mm = level->centre_half_width_px * load_floats(s->from->segment + at);
+  Target own;
+  own.z = load_floats(s->from->depth + at);
+  own.ray_depth = load_floats(s->from->ray_depth + at);
+  own.spread = own.z * (f->slope_x * f->slope_x);
+  own.square_mm2 = f->mm_per_px_x * f->mm_per_px_x;
+  own.reciprocal = width_reciprocal(s->from, at);
+  const vrgb length = times(own.reciprocal, load_floats(s->from->segment + at));
+  const vrgb t_centre = {nearness->scale / (length.r + nearness->softening),
+                         nearness->scale / (length.g + nearness->softening),
+                         nearness->scale / (length.b + nearness->softening)};
   Sums sums;
-  vrgb own[TERMS];
+  vrgb light[TERMS];
 #pragma unroll
   for (int t = 0; t < TERMS; ++t) {
-    own[t] = load_term(s, t, at);
-    const vrgb centre = terms[t].normalised ? scaled(weights[t].length_mm,
-                                                     look_up(&terms[t].centre, times(target.reciprocal, centre_mm)))
-                                            : broadcast_rgb((vfloat)(0.0f));
-    sums.light[t] = product(centre, own[t]);
-    sums.weight[t] = centre;
+    light[t] = load_term(s, t, at);
+    sums.weight[t] = broadcast_rgb((vfloat)(0.0f));
+    if (terms[t].normalised) {
+      const vrgb lost = cubic(weights + t, t_centre);
+      const vfloat least = (vfloat)(LEAST_CENTRE_WEIGHT);
+      sums.weight[t].r = higher(1.0f - lost.r, least);
+      sums.weight[t].g = higher(1.0f - lost.g, least);
+      sums.weight[t].b = higher(1.0f - lost.b, least);
+    }
+    sums.light[t] = product(sums.weight[t], light[t]);
   }
   int i = 0;
 #if JITTER
@@ -225,19 +257,20 @@ FORCED_INLINE void scatter_curved(vrgb* result, const struct FrameParams* f, con
   for (; i < level->rotated_pairs; ++i) {
     const vint dx = (offsets[i] * axis_x + 2048) >> 12;
     const vint dy = (offsets[i] * axis_y + 2048) >> 12;
-    global const struct WeightParams* its = weights + (i + 1) * TERMS;
-    add_rotated(&sums, f, s, &target, its, x, y, dx, dy);
-    add_rotated(&sums, f, s, &target, its, x, y, -dx, -dy);
+    ++nearness;
+    weights += TERMS;
+    add_rotated(&sums, f, s, &own, nearness, weights, material, x, y, dx, dy);
+    add_rotated(&sums, f, s, &own, nearness, weights, material, x, y, -dx, -dy);
   }
 #endif
-  const Shears shears = shears_at(f, s, material, x, y);
-  int run = 0;
+  int shear[SHEAR_RUNS];
+  for (int run = 0; run < SHEAR_RUNS; ++run) shear[run] = SHEARED ? s->from->shear[at / SHEAR_RUN + run] : 0;
 #pragma nounroll
-  for (int tap = 2 * i; tap < 2 * level->pairs;) {
-    global const struct WeightParams* its = weights + (tap / 2 + 1) * TERMS;
-    const int has_more = add_tap(&sums, f, s, &target, its, &shears, x, y, offset_of(offsets, tap), run, clean);
-    run = has_more ? run + 1 : 0;
-    tap += !has_more;
+  for (; i < level->pairs; ++i) {
+    ++nearness;
+    weights += TERMS;
+    add_shifted(&sums, f, s, &own, nearness, weights, material, shear, x, y, -offsets[i], clean);
+    add_shifted(&sums, f, s, &own, nearness, weights, material, shear, x, y, offsets[i], clean);
   }
   // Where more surface lies within reach than on a plane, a mean divides by it, and a difference must not grow with it.
   const vrgb all = sums.weight[0];
@@ -248,6 +281,6 @@ FORCED_INLINE void scatter_curved(vrgb* result, const struct FrameParams* f, con
       sums.light[t] = product(share, sums.light[t]);
       sums.weight[t] = product(share, sums.weight[t]);
     }
-    result[t] = finish_term(terms + t, sums.light[t], sums.weight[t], own[t]);
+    result[t] = finish_term(terms + t, sums.light[t], sums.weight[t], light[t]);
   }
 }

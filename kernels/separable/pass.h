@@ -1,6 +1,6 @@
 // One separable pass: the tables and the pixels that it reads, and its sums.
 #include "frame/load.h"
-#include "frame/tangent.h"
+#include "frame/shear.h"
 
 #ifndef TERMS
 #error "TERMS: of every material; those that it does not have weigh nothing"
@@ -12,9 +12,9 @@ typedef struct {
   global const struct TermParams* terms;
   global const struct TapLevelParams* levels;
   global const int* offsets;
-  global const struct WeightParams* weights;
+  global const struct NearnessParams* nearness;
+  global const struct CubicWeight* weights;
   global const struct FlatWeight* flat_weights;
-  global const struct SmoothWeight* smooth_weights;
   global const struct RotationParams* rotations;
   global const struct BlockPasses* passes;
   uint seed;
@@ -29,9 +29,9 @@ static inline Tables tables_in(const struct TapTables* at, global const uchar* t
                          (global const struct TermParams*)(taps + at->terms),
                          levels,
                          (global const int*)(taps + at->offsets),
-                         (global const struct WeightParams*)(taps + at->weights),
+                         (global const struct NearnessParams*)(taps + at->nearness),
+                         (global const struct CubicWeight*)(taps + at->weights),
                          (global const struct FlatWeight*)(taps + at->flat_weights),
-                         (global const struct SmoothWeight*)(taps + at->smooth_weights),
                          rotations,
                          passes,
                          seed};

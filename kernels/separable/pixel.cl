@@ -2,6 +2,7 @@
 // has one pixel. The vertical pass reads the light and the segments of its own from buffers beside the window.
 #pragma OPENCL FP_CONTRACT OFF
 #include "separable/scatter.h"
+#include "separable/segment.h"
 
 kernel void segments(struct FrameParams f, struct FrameLayouts layouts, global const uchar* matte,
                      struct WindowParams window, global uchar* memory, global float* vertical_segment) {
@@ -13,8 +14,21 @@ kernel void segments(struct FrameParams f, struct FrameLayouts layouts, global c
 #if HAS_MATTE
   share = share_of_surface(row_of(matte, &layouts.matte, f.width, y, 0), x);
 #endif
-  store_floats(w.segment + at, share * segment_length(&f, &w, x, y, 0));
-  store_floats(vertical_segment + at, share * segment_length(&f, &w, x, y, 1));
+  store_floats(w.segment + at, share * segment_at(&f, &w, x, y, 0).length);
+  store_floats(vertical_segment + at, share * segment_at(&f, &w, x, y, 1).length);
+}
+
+// A work-item has a row of a block.
+kernel void shears(struct FrameParams f, struct WindowParams window, global uchar* memory) {
+  const Window w = window_in(&window, memory);
+  const int first = get_global_id(0) * BLOCK;
+  const int y = get_global_id(1);
+  RunShears shears;
+  for (int i = 0; i < BLOCK; ++i) {
+    const Segment segment = segment_at(&f, &w, first + i, y, 1);
+    add_shears(&shears, &segment, i);
+  }
+  store_shears(&shears, w.shear + pixel_at(&w, first, y) / SHEAR_RUN);
 }
 
 kernel void scatter_x(struct FrameParams f, struct WindowParams window, global uchar* memory,

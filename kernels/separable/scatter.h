@@ -2,7 +2,6 @@
 #include "classify/tap_level.h"
 #include "separable/curved.h"
 #include "separable/flat.h"
-#include "separable/smooth.h"
 
 static inline struct BlockPass block_pass(const struct FrameParams* f, const Tables* tables, int block_x, int block_y,
                                           int axis) {
@@ -46,8 +45,6 @@ SHARED void scatter_pixels(vrgb* result, const struct FrameParams* f, const Pass
       global const struct TapLevelParams* level = tables->levels + its->first_level + step.level;
       if (pass.block_class == CLASS_CURVED) {
         scatter_curved(scattered, f, &its_pass, tables, level, terms, material, x, y, 0);
-      } else if (pass.block_class == CLASS_SMOOTH) {
-        scatter_smooth(scattered, f, &its_pass, tables, level, terms, material, x, y);
       } else {
         scatter_flat(scattered, f, &its_pass, tables, level, tables->flat_weights + first_flat_weight(level, step.part),
                      terms, material, x, y);

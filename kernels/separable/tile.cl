@@ -26,23 +26,20 @@ static inline LightSummary scatter_rows(const Windows* w, const TileRun* run) {
   int next_surface = vertical->y_begin;
   const Columns nothing = {0, 0};
   Columns there = nothing;
-  Columns bent = nothing;
   Columns curved = nothing;
   const Columns segments_vertical = widened(w->curved_vertical, w->side_px, vertical);
-  const Columns surface_vertical =
-      joined(widened(w->bent_vertical, V, vertical), widened(segments_vertical, V, vertical));
+  const Columns surface_vertical = widened(segments_vertical, V, vertical);
   for (int y = horizontal->y_begin; y < horizontal->y_end; ++y) {
     if (y % BLOCK == 0 || y == horizontal->y_begin) {
       const Box row = {w->computed.x_begin, w->computed.x_end, y, y + 1};
       there = widened(columns_of(run, row, 0, CLASS_EMPTY + 1), w->reach_x + V, horizontal);
       if (w->class_horizontal != CLASS_FLAT) {
-        bent = widened(columns_of(run, row, 0, CLASS_SMOOTH), 0, horizontal);
         curved = widened(columns_of(run, row, 0, CLASS_CURVED), w->reach_x + V, horizontal);
       }
     }
     load_light_row(&light_summary, w, run, there, y);
     // Slopes are taken from the next pixels, too.
-    if (bent.begin < bent.end) load_surface_row(horizontal, run, widened(joined(bent, curved), V, horizontal), y);
+    if (curved.begin < curved.end) load_surface_row(horizontal, run, widened(curved, V, horizontal), y);
     measure_segments(horizontal, run, 0, curved, y);
     if (w->class_vertical != CLASS_FLAT) {
       // Slopes are taken from the next row, too.

@@ -27,25 +27,6 @@ SHARED void horizontal_flat(const Windows* w, const TileRun* run, struct ChoiceP
   }
 }
 
-// Scatters smooth blocks of one row.
-SHARED void horizontal_smooth(const Windows* w, const TileRun* run, struct ChoiceParams choice, const LaterRow* later,
-                              Columns columns, int y) {
-  const Tables* tables = run->tables;
-  const Window from = w->horizontal;
-  const Pass pass = pass_from(&from, 0, 0);
-  const size_t plane = w->vertical.plane;
-  global float* to = w->vertical.light + pixel_at(&w->vertical, 0, y);
-  global const struct TapLevelParams* level = tables->levels + choice.level;
-  global const int* offsets = tables->offsets + level->first_offset;
-  global const struct SmoothWeight* weights = tables->smooth_weights + choice.weight;
-  for (int x = columns.begin; x < columns.end; x += V) {
-    fetch_later(later, x);
-    vrgb result[TERMS];
-    scatter_smooth_clean(result, run->f, &pass, level, offsets, weights, x, y);
-    for (int t = 0; t < TERMS; ++t) store_rgb(to + 3 * t * plane, plane, x, result[t]);
-  }
-}
-
 // Scatters curved blocks of one row.
 SHARED void horizontal_curved(const Windows* w, const TileRun* run, struct ChoiceParams choice, const LaterRow* later,
                               Columns columns, int y) {
@@ -60,7 +41,10 @@ SHARED void horizontal_curved(const Windows* w, const TileRun* run, struct Choic
     vrgb result[TERMS];
     scatter_curved(result, run->f, &pass, tables, tables->levels + choice.level, terms, (vint)(choice.material + 1), x,
                    y, 1);
-    for (int t = 0; t < TERMS; ++t) store_rgb(to + 3 * t * plane, plane, x, result[t]);
+    const vint there = AS_MASK(load_bytes(from.material_ids + pixel_at(&from, x, y)) != 0);
+    for (int t = 0; t < TERMS; ++t) {
+      store_rgb(to + 3 * t * plane, plane, x, select_or_zero_rgb(there, result[t]));
+    }
   }
 }
 
@@ -135,8 +119,6 @@ static inline void scatter_row(const Windows* w, const TileRun* run, const Light
       horizontal_uniform(w, run, light_summary, &later, columns, y);
     } else if (variant == VARIANT_FLAT) {
       horizontal_flat(w, run, choice, &later, columns, y);
-    } else if (variant == VARIANT_SMOOTH) {
-      horizontal_smooth(w, run, choice, &later, columns, y);
     } else if (variant == VARIANT_CURVED) {
       horizontal_curved(w, run, choice, &later, columns, y);
     } else {

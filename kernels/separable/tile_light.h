@@ -144,17 +144,23 @@ SHARED void load_surface_row(const Window* w, const TileRun* run, Columns column
   }
 }
 
-// Measures the segments of one row of a window, in those columns that lie in it.
+// Measures the segments of one row of a window, in those columns that lie in it, and the shears of the vertical pass.
 SHARED void measure_segments(const Window* w, const TileRun* run, int axis, Columns columns, int y) {
 #if HAS_MATTE
   const Row matte = row_of(run->in->matte, &run->in->layouts->matte, run->f->width, y, 0);
 #endif
-  const int x_end = min(columns.end, w->x_end);
-  for (int x = max(columns.begin, w->x_begin); x < x_end; x += V) {
-    vfloat length = segment_length(run->f, w, x, y, axis);
+  const Window window = *w;
+  const int x_end = min(columns.end, window.x_end);
+  for (int first = max(columns.begin, window.x_begin); first < x_end; first += BLOCK) {
+    RunShears shears;
+    for (int x = first; x < first + BLOCK; x += V) {
+      Segment segment = segment_at(run->f, &window, x, y, axis);
 #if HAS_MATTE
-    length *= share_of_surface(matte, x);
+      segment.length *= share_of_surface(matte, x);
 #endif
-    store_floats(w->segment + pixel_at(w, x, y), length);
+      store_floats(window.segment + pixel_at(&window, x, y), segment.length);
+      add_shears(&shears, &segment, x - first);
+    }
+    if (SHEARED && axis == 1) store_shears(&shears, window.shear + pixel_at(&window, first, y) / SHEAR_RUN);
   }
 }

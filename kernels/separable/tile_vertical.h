@@ -18,7 +18,7 @@ static inline TapPlaces places_of(const Windows* w, int y_begin, int y_end) {
   return places;
 }
 
-// Writes how far taps lie to the side in a flat or smooth block.
+// Writes how far taps lie to the side in a flat block.
 static inline void place_sides(const Windows* w, const Tables* tables, struct ChoiceParams choice) {
 #if SHEARED
   global const struct TapLevelParams* level = tables->levels + choice.level;
@@ -53,41 +53,25 @@ SHARED void vertical_flat(const Windows* w, const TileRun* run, TapPlaces places
   }
 }
 
-// Scatters a smooth block.
-SHARED void vertical_smooth(const Windows* w, const TileRun* run, TapPlaces places, struct ChoiceParams choice,
-                            const Planes* to, Box box) {
+// Scatters a curved block. Returns whether it has gaps.
+SHARED int vertical_curved(const Windows* w, const TileRun* run, TapPlaces places, struct ChoiceParams choice,
+                           const Planes* to, Box box) {
   const Tables* tables = run->tables;
   const Window from = w->vertical;
-  const Pass pass = pass_vertical(&from, places, choice.shear);
+  const Pass pass = pass_vertical(&from, places, 0);
   const Planes target = *to;
-  global const struct TapLevelParams* level = tables->levels + choice.level;
-  global const int* offsets = tables->offsets + level->first_offset;
-  global const struct SmoothWeight* weights = tables->smooth_weights + choice.weight;
   global const struct TermParams* terms = tables->terms + tables->materials[choice.material].first_term;
-  for (int y = box.y_begin; y < box.y_end; ++y) {
-    for (int x = box.x_begin; x < box.x_end; x += V) {
-      vrgb result[TERMS];
-      scatter_smooth_clean(result, run->f, &pass, level, offsets, weights, x, y);
-      store_planes(&target, y * target.row_stride + x, total_of(terms, result));
-    }
-  }
-}
-
-// Scatters a curved block.
-SHARED void vertical_curved(const Windows* w, const TileRun* run, struct ChoiceParams choice, const Planes* to,
-                            Box box) {
-  const Tables* tables = run->tables;
-  const Window from = w->vertical;
-  const Pass pass = pass_from(&from, 1, 0);
-  global const struct TermParams* terms = tables->terms + tables->materials[choice.material].first_term;
+  vint gaps = (vint)(0);
   for (int y = box.y_begin; y < box.y_end; ++y) {
     for (int x = box.x_begin; x < box.x_end; x += V) {
       vrgb result[TERMS];
       scatter_curved(result, run->f, &pass, tables, tables->levels + choice.level, terms, (vint)(choice.material + 1),
                      x, y, 1);
-      store_planes(to, y * to->row_stride + x, total_of(terms, result));
+      gaps |= AS_MASK(load_bytes(from.material_ids + pixel_at(&from, x, y)) == 0);
+      store_planes(&target, y * target.row_stride + x, total_of(terms, result));
     }
   }
+  return any_bit(gaps);
 }
 
 // Scatters any block.
@@ -122,13 +106,11 @@ static inline int scatter_column(const Windows* w, const TileRun* run, TapPlaces
     }
     const int variant = has_bad ? VARIANT_GENERAL : choice.variant;
     is_empty = 0;
-    if (variant == VARIANT_FLAT || variant == VARIANT_SMOOTH) place_sides(w, run->tables, choice);
     if (variant == VARIANT_FLAT) {
+      place_sides(w, run->tables, choice);
       vertical_flat(w, run, places, choice, strip, block);
-    } else if (variant == VARIANT_SMOOTH) {
-      vertical_smooth(w, run, places, choice, strip, block);
     } else if (variant == VARIANT_CURVED) {
-      vertical_curved(w, run, choice, strip, block);
+      if (vertical_curved(w, run, places, choice, strip, block)) is_general = 1;
     } else {
       vertical_any(w, run, strip, block);
       is_general = 1;

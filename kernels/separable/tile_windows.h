@@ -1,6 +1,7 @@
 // The windows of a tile: as large as its taps go, with room for the rows that they fall on.
 #include "frame/compose.h"
 #include "separable/scatter.h"
+#include "separable/segment.h"
 
 // The run that all tiles belong to.
 typedef struct {
@@ -117,9 +118,8 @@ typedef struct {
   Box computed;          // by the horizontal pass
   int class_horizontal;  // the most curved one of all blocks
   int class_vertical;
-  Columns bent_vertical;  // blocks that are not flat in the vertical pass, in any row
-  Columns curved_vertical;
-  int reach_x;  // of the taps of the horizontal pass
+  Columns curved_vertical;  // blocks that are not flat in the vertical pass, in any row
+  int reach_x;              // of the taps of the horizontal pass
   int reach_y;
   int side_px;  // of the vertical pass, to the side
 } Windows;
@@ -173,7 +173,6 @@ static inline Windows windows_of(const TileRun* run, Box own, global uchar* memo
     columns.x_begin = own.x_begin;
     columns.x_end = own.x_end;
   }
-  w.bent_vertical = columns_of(run, columns, 1, CLASS_SMOOTH);
   w.curved_vertical = columns_of(run, columns, 1, CLASS_CURVED);
   struct WindowParams p;
   p.planes = layout->horizontal;

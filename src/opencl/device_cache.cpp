@@ -33,9 +33,8 @@ BorrowedQueue::~BorrowedQueue() {
 std::size_t DeviceCache::bytes_of(const Taps& taps) {
   std::size_t sum = sizeof(Taps) + bytes(taps.terms) + bytes(taps.levels);
   for (const TapLevel& level : taps.levels) {
-    sum += bytes(level.centre_gain) + bytes(level.offsets_px) + bytes(level.weights);
+    sum += bytes(level.offsets_px) + bytes(level.nearness) + bytes(level.weights);
     for (const auto& weights : level.flat_weights) sum += bytes(weights);
-    sum += bytes(level.stretch_weights) + bytes(level.skew_weights);
   }
   return sum;
 }

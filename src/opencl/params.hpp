@@ -8,9 +8,9 @@ namespace dermis::params {
 static_assert(sizeof(ImageParams) == 2 * 8 + 4 * 4);
 static_assert(sizeof(FrameLayouts) == 10 * sizeof(ImageParams));
 static_assert(sizeof(RunFlags) == 7 * 4);
-static_assert(sizeof(FrameParams) == 14 * 4);
+static_assert(sizeof(FrameParams) == 15 * 4);
 static_assert(sizeof(TileParams) == 6 * 4);
-static_assert(sizeof(WindowLayout) == 6 * 8);
+static_assert(sizeof(WindowLayout) == 8 * 8);
 static_assert(sizeof(WindowParams) == sizeof(WindowLayout) + 6 * 4);
 static_assert(sizeof(TileMemory) == 2 * sizeof(WindowLayout) + 6 * 8);
 static_assert(sizeof(TapTables) == 5 * 8);

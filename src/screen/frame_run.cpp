@@ -28,6 +28,7 @@ params::FrameParams frame_params(const Frame& frame, const Options& options, con
   }
   p.center_x = static_cast<float>(camera.center_x);
   p.center_y = static_cast<float>(camera.center_y);
+  p.aspect2 = static_cast<float>(camera.scale_x / camera.scale_y * (camera.scale_x / camera.scale_y));
   p.albedo_mix = static_cast<float>(options.albedo_mix);
   p.widest_turn = static_cast<float>(std::max({1.0, camera.scale_y / camera.scale_x, camera.scale_x / camera.scale_y}));
   return p;
@@ -173,7 +174,6 @@ void FrameRun::add_to(Stats& stats) const {
   stats.pixels_narrow = counted[COUNTER_NARROW];
   stats.pixels_without_material = stats.pixels - stats.pixels_scattered - stats.pixels_narrow;
   stats.pixels_flat = counted[COUNTER_FLAT];
-  stats.pixels_smooth = counted[COUNTER_SMOOTH];
   stats.channels_narrow = counted[COUNTER_CHANNELS];
   stats.pixels_bad = counted[COUNTER_BAD];
   stats.pixels_unlit = counted[COUNTER_UNLIT];

@@ -2,9 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
-#include <cmath>
-#include <cstdint>
 #include <future>
 #include <memory>
 
@@ -14,41 +11,14 @@ namespace dermis {
 
 namespace {
 
-params::OctavesParams octaves_params(const RadialTable& table) {
-  static_assert(RadialTable::octaves == OCTAVES);
-  params::OctavesParams row{};
-  row.first_bits = std::bit_cast<std::int32_t>(std::ldexp(1.0F, table.first_exponent));
-  for (int c = 0; c < 3; ++c) {
-    for (int power = 0; power < 3; ++power) {
-      std::copy_n(table.coefficients[c][power].begin(), OCTAVES, row.coefficients[c][power]);
-    }
-  }
-  return row;
-}
-
-void append_smooth_weights(const TapLevel& level, std::size_t terms, MaterialTables& tables) {
-  const auto terms_per_material = static_cast<std::size_t>(tables.terms_per_material);
-  const auto& flat_weights = level.flat_weights[LEVEL_PARTS / 2];
-  for (std::size_t row = 0; row <= level.offsets_px.size(); ++row) {
-    for (std::size_t t = 0; t < terms_per_material; ++t) {
-      params::SmoothWeight its{};
-      if (t < terms) {
-        std::copy_n(flat_weights[row * terms + t].begin(), 3, its.rgb);
-        std::copy_n(level.stretch_weights[row * terms + t].begin(), 3, its.stretch);
-        if (row > 0) std::copy_n(level.skew_weights[(row - 1) * terms + t].begin(), 3, its.skew);
-      }
-      tables.smooth_weights.push_back(its);
-    }
-  }
-}
-
 /// The number of pairs of a level in which each channel has a weight, from the first pair on.
 std::array<int, 3> channel_pairs(const TapLevel& level, std::size_t terms) {
   std::array<int, 3> pairs{};
-  for (std::size_t at = terms; at < level.stretch_weights.size(); ++at) {
+  for (std::size_t at = terms; at < level.weights.size(); ++at) {
     for (int c = 0; c < 3; ++c) {
-      bool has_weight = level.stretch_weights[at][c] != 0 || level.skew_weights[at - terms][c] != 0;
-      for (const auto& weights : level.flat_weights) has_weight = has_weight || weights[at][c] != 0;
+      bool has_weight = std::any_of(level.weights[at].begin(), level.weights[at].end(),
+                                    [&](const auto& coefficients) { return coefficients[c] != 0; });
+      for (const auto& part : level.flat_weights) has_weight = has_weight || part[at][c] != 0;
       if (has_weight) pairs[c] = static_cast<int>(at / terms);
     }
   }
@@ -65,24 +35,25 @@ void append_level(const TapLevel& level, const Taps& taps, double jitter, Materi
   tables.farthest_px = std::max(tables.farthest_px, last_px);
   const auto [red_pairs, green_pairs, blue_pairs] = channel_pairs(level, taps.terms.size());
   tables.levels.push_back({level.px_per_mm,
-                           level.centre_half_width_px,
                            static_cast<int>(tables.offsets_px.size()),
                            static_cast<int>(level.offsets_px.size()),
                            {red_pairs, green_pairs, blue_pairs},
                            static_cast<int>(rotated),
+                           static_cast<int>(tables.nearness.size()),
                            static_cast<int>(tables.weights.size()),
                            static_cast<int>(tables.flat_weights.size()),
-                           static_cast<int>(tables.smooth_weights.size()),
                            last_px});
   tables.offsets_px.insert(tables.offsets_px.end(), level.offsets_px.begin(), level.offsets_px.end());
+  for (const auto& [scale, softening] : level.nearness) tables.nearness.push_back({scale, softening});
   const std::size_t terms = taps.terms.size();
   for (std::size_t row = 0; row <= level.offsets_px.size(); ++row) {
     for (std::size_t t = 0; t < terms_per_material; ++t) {
-      params::WeightParams its{};
+      params::CubicWeight its{};
       if (t < terms) {
-        const TapWeight weight = row == 0 ? TapWeight{level.centre_gain[t], {}} : level.weights[(row - 1) * terms + t];
-        std::copy(weight.length_mm.begin(), weight.length_mm.end(), its.length_mm);
-        std::copy(weight.share.begin(), weight.share.end(), its.share);
+        const auto& [a, b, c] = level.weights[row * terms + t];
+        std::copy(a.begin(), a.end(), its.a);
+        std::copy(b.begin(), b.end(), its.b);
+        std::copy(c.begin(), c.end(), its.c);
       }
       tables.weights.push_back(its);
     }
@@ -97,7 +68,6 @@ void append_level(const TapLevel& level, const Taps& taps, double jitter, Materi
       }
     }
   }
-  append_smooth_weights(level, terms, tables);
 }
 
 void append_terms(const Taps& taps, MaterialTables& tables) {
@@ -106,8 +76,6 @@ void append_terms(const Taps& taps, MaterialTables& tables) {
     std::copy(term.scale.begin(), term.scale.end(), row.scale);
     std::copy(term.sum.begin(), term.sum.end(), row.sum);
     row.normalised = term.normalised ? 1 : 0;
-    row.falloff = octaves_params(term.falloff);
-    row.centre = octaves_params(term.centre);
     tables.terms.push_back(row);
   }
   params::TermParams nothing = tables.terms.back();

@@ -18,9 +18,9 @@ struct MaterialTables {
   std::vector<params::TapLevelParams> levels;
   std::vector<params::TermParams> terms;
   std::vector<int> offsets_px;
-  std::vector<params::WeightParams> weights;
+  std::vector<params::NearnessParams> nearness;
+  std::vector<params::CubicWeight> weights;
   std::vector<params::FlatWeight> flat_weights;
-  std::vector<params::SmoothWeight> smooth_weights;
 };
 
 /// The taps that each material gets.

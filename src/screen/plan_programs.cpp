@@ -2,7 +2,7 @@
 
 #include <sstream>
 
-#include "dermis/taps.hpp"
+#include "dermis/tap_tables.hpp"
 #include "screen/frame_images.hpp"
 
 namespace dermis {
@@ -12,8 +12,8 @@ namespace {
 /// The build options that all kernels of a plan share.
 std::string common_options(const PlanSettings& settings) {
   std::ostringstream bounds;
-  bounds << std::scientific << " -DFLATNESS=" << Taps::flatness << "f -DSMOOTHNESS=" << Taps::smoothness
-         << "f -DMOST_STRETCH=" << Taps::most_stretch << "f -DMOST_SKEW=" << Taps::most_skew << "f";
+  bounds << std::scientific << " -DFLATNESS=" << Taps::flatness << "f -DLEAST_CENTRE_WEIGHT=" << least_centre_weight
+         << "f";
   return "-cl-std=CL1.2" + build_constant("MATERIALS", static_cast<int>(settings.materials.size())) +
          image_constants(settings.frames) + build_constant("PIXEL_WIDTH", settings.has_pixel_width() ? 1 : 0) +
          build_constant("JITTER", settings.options.jitter > 0 ? 1 : 0) +

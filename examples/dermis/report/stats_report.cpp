@@ -145,7 +145,6 @@ std::string text_of(const StatsReport& report) {
   text += counted("without material", stats.pixels_without_material, stats.pixels);
   text += counted("narrow", stats.pixels_narrow, stats.pixels);
   text += counted("flat", stats.pixels_flat, stats.pixels);
-  text += counted("smooth", stats.pixels_smooth, stats.pixels);
   text += counted("bad", stats.pixels_bad, stats.pixels);
   if (options.method == Method::disc) text += counted("unlit", stats.pixels_unlit, stats.pixels);
   text += fmt::format("channels    {}\n", 3 * stats.pixels_scattered);
@@ -176,7 +175,6 @@ std::string json_text_of(const StatsReport& report) {
                       {"without_material", stats.pixels_without_material},
                       {"narrow", stats.pixels_narrow},
                       {"flat", stats.pixels_flat},
-                      {"smooth", stats.pixels_smooth},
                       {"narrow_channels", stats.channels_narrow},
                       {"bad", stats.pixels_bad},
                       {"unlit", stats.pixels_unlit}};

@@ -25,7 +25,6 @@ constexpr std::array<KindLook, word_table<TileKind>.size()> looks = {{{"grey", {
                                                                       {"blue", {0, 0.1F, 1}},
                                                                       {"green", {0, 0.5F, 0.1F}},
                                                                       {"yellow", {1, 0.8F, 0}},
-                                                                      {"orange", {1, 0.3F, 0}},
                                                                       {"red", {1, 0.05F, 0.02F}},
                                                                       {"white", {1, 1, 1}}}};
 

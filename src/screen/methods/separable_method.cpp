@@ -37,9 +37,9 @@ void SeparableMethod::upload(const cl::Context& context, const MaterialTables& t
   PackedTables packed;
   taps_at_.terms = packed.add(tables.terms);
   taps_at_.offsets = packed.add(tables.offsets_px);
+  taps_at_.nearness = packed.add(tables.nearness);
   taps_at_.weights = packed.add(tables.weights);
   taps_at_.flat_weights = packed.add(tables.flat_weights);
-  taps_at_.smooth_weights = packed.add(tables.smooth_weights);
   taps_ = dermis::upload(context, packed.bytes());
 }
 

@@ -33,6 +33,10 @@ class SeparablePixels final : public SeparableMethod {
     set_arguments(kernel, run.frame(), run.images().layouts(), run.images().buffers({ImageName::matte}), run.window(),
                   buffers[window], buffers[vertical_segments]);
     run.launch(kernel, run.size().width, run.size().height, 0);
+    if (!settings_.is_sheared()) return;
+    cl::Kernel shears(run.program(), "shears");
+    set_arguments(shears, run.frame(), run.window(), buffers[window]);
+    run.launch(shears, run.size().blocks_x(), run.size().height, 0);
   }
 
   void scatter(FrameRun& run, RowRange) const override {

@@ -11,10 +11,4 @@ inline double in_quanta(double weight) {
   return std::round(weight / quantum) * quantum;
 }
 
-/// Rounds to whole multiples of 2^-20, which float32 adds without rounding up to a sum of 16.
-inline double in_coarse_quanta(double weight) {
-  constexpr double quantum = 0x1p-20;
-  return std::round(weight / quantum) * quantum;
-}
-
 }  // namespace dermis

@@ -1,11 +1,22 @@
-// RadialTable: made and read.
+// A function of distance, tabulated for three channels.
 #pragma once
 
+#include <array>
 #include <functional>
 
-#include "dermis/tap_tables.hpp"
-
 namespace dermis {
+
+/// A parabola in each of 32 octaves of r^4,
+///
+///     value = a + t (b + t c),   r^4 = 2^(first_exponent + octave) (1 + t),   0 <= t < 1.
+///
+/// It has no jumps. Below the first octave it is the first value, beyond the last octave the last.
+struct RadialTable {
+  static constexpr int octaves = 32;
+
+  int first_exponent = 0;
+  std::array<std::array<std::array<float, octaves>, 3>, 3> coefficients{};  ///< a, b, c of each channel
+};
 
 /// Tabulates f(channel, r) in the octaves of r^4 up to the one that holds r_max, at the end of which the value is
 /// f(infinity), and one more.
@@ -13,7 +24,7 @@ namespace dermis {
 /// parabola: where f falls too steeply its middle value is raised.
 RadialTable tabulate(const std::function<double(int, double)>& f, double r_max_mm);
 
-/// The value of a table at r, as a kernel computes it.
+/// The value of a table at r.
 double value_at(const RadialTable& table, int channel, double r);
 
 }  // namespace dermis

@@ -1,0 +1,78 @@
+#include "taps/tables/surface_weights.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace dermis {
+
+TermCurves make_term_curves(const Profile& profile, const ModelTerm& model, double radius_mm) {
+  TermCurves curves{.normalised = model.normalised, .sum = {}, .falloff = {}, .centre = {}};
+  for (int c = 0; c < 3; ++c) curves.sum[c] = model.normalised ? 1 : model.functions[c].sum();
+  const auto falloff = [&](int c, double r) {
+    const double value = std::isinf(r) ? 0 : value_of(profile, c, model.functions[c], r);
+    return model.normalised ? std::max(value, 0.0) : value;
+  };
+  const auto centre = [&](int c, double r) {
+    const TermFunction& f = model.functions[c];
+    return f.sum() - (std::isinf(r) ? 0 : 2 * tail_of(profile, c, f, r));
+  };
+  // Tilt stretches distances beyond the radius.
+  curves.falloff = tabulate(falloff, 2 * radius_mm);
+  curves.centre = tabulate([&](int c, double root) { return centre(c, root * root); }, std::sqrt(4 * radius_mm));
+  return curves;
+}
+
+SurfaceWeights::SurfaceWeights(const SizedTaps& taps, const std::vector<TermCurves>& terms, double px_per_mm)
+    : taps_(taps), terms_(terms), px_per_mm_(px_per_mm) {
+  constexpr double longest_of_correction = 4;
+  constexpr double longest = 1e4;
+  constexpr double largest_share = 1e4;
+  const std::vector<double>& offsets_px = taps.placed.offsets_px;
+  for (int c = 0; c < 3; ++c) {
+    for (std::size_t row = 0; row < rows(); ++row) {
+      // A pair stands for the surface from half the way to one neighbour to half the way to the other.
+      const double before = row < 2 ? 0 : offsets_px[row - 2];
+      const double after = row == 0 ? 1 : row < offsets_px.size() ? offsets_px[row] : 2 * offsets_px[row - 1] - before;
+      const double its_length_mm = (after - before) / 2 / px_per_mm;
+      for (std::size_t t = 0; t < terms.size(); ++t) {
+        Follower its;
+        const double weight = fitted(row, t, c);
+        const double density = row == 0 ? value_at(terms[t].centre, c, std::sqrt(distance_mm(0)))
+                                        : value_at(terms[t].falloff, c, distance_mm(row));
+        if (row == 0) {
+          if (terms[t].normalised && density > 0) its.length_mm = weight / density;
+        } else if (density != 0 && terms[t].normalised) {
+          // Weight and density may be nothing but rounding, of either sign.
+          const double length_mm = weight / density;
+          if (length_mm >= 0 && length_mm < longest * its_length_mm) its.length_mm = length_mm;
+        } else if (density != 0) {
+          its.length_mm = std::clamp(weight / density, 0.0, longest_of_correction * its_length_mm);
+          const double rest = weight - its.length_mm * density;
+          const double first = fitted(row, 0, c);
+          if (std::abs(rest) < largest_share * first) its.share = rest / first;
+        }
+        followers_[c].push_back(its);
+      }
+    }
+  }
+}
+
+double SurfaceWeights::fitted(std::size_t row, std::size_t term, int channel) const {
+  return taps_.placed.weights[channel](static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(term));
+}
+
+double SurfaceWeights::distance_mm(std::size_t row) const {
+  return (row == 0 ? taps_.centre_half_width_px : offsets_px()[row - 1]) / px_per_mm_;
+}
+
+double SurfaceWeights::on_surface(std::size_t row, std::size_t term, int channel, double length,
+                                  double distance) const {
+  const Follower& its = followers_[channel][row * terms_.size() + term];
+  if (row == 0) {
+    return its.length_mm * value_at(terms_[term].centre, channel, std::sqrt(distance_mm(0) * length));
+  }
+  const double own = its.length_mm * length * value_at(terms_[term].falloff, channel, distance_mm(row) * distance);
+  return its.share == 0 ? own : own + its.share * on_surface(row, 0, channel, length, distance);
+}
+
+}  // namespace dermis
