@@ -118,7 +118,7 @@ struct Blocks::Variation {
   Bounded squared_length_varying;  ///< of dT, by which the change may differ from T, mm^2
 };
 
-/// The rays are those through the middle of the block at `place`; `relief` may be that of its surroundings.
+/// The rays are those through the middle of the block at `place`, `relief` is that of its surroundings.
 Blocks::Variation Blocks::variation(Axis axis, const Place& place, const BoundedShear& shear,
                                     const Relief& relief) const {
   const View& view = surface_.view();
@@ -165,8 +165,8 @@ void Blocks::add_passes(Axis axis, const Place& place, const Extent& extent, std
     passes.push_back(curved);
     return;
   }
-  const Variation within_reach = variation(axis, place, extent.shear, near.relief);
-  const Bounded length = square_root(within_reach.squared_length);
+  const Variation change = variation(axis, place, extent.shear, near.relief);
+  const Bounded length = square_root(change.squared_length);
   Bounded largest_range = length;
   for (const Axis i : {horizontal, vertical}) {
     const Range& step_mm = near.relief.step_mm[i];
@@ -174,33 +174,11 @@ void Blocks::add_passes(Axis axis, const Place& place, const Extent& extent, std
     largest_range = largest_range + exact(near.size_px[i]) * steepest;
   }
   const Decision unbroken = is_at_most(exact(2) * near.relief.depth_mm.half_range(), rounded(largest_range));
-  const auto varies_at_most = [&](double share) {
-    return both(unbroken, is_at_most(within_reach.squared_length_varying,
-                                     exact(share) * exact(share) * within_reach.squared_length));
-  };
-  const Decision flat = varies_at_most(Taps::flatness);
-  const Decision smooth = varies_at_most(Taps::smoothness);
-
-  const auto add = [&](BlockClass block_class) {
-    switch (block_class) {
-      case BlockClass::flat:
-        passes.push_back({block_class, exact(1) / length, extent.shear});
-        break;
-      case BlockClass::smooth: {
-        const Variation within_block = variation(axis, place, extent.shear, block.relief);
-        passes.push_back({block_class, exact(1) / square_root(within_block.squared_length), extent.shear});
-        break;
-      }
-      case BlockClass::curved:
-        passes.push_back(curved);
-    }
-  };
-  const BlockClass nominal = flat.yes ? BlockClass::flat : smooth.yes ? BlockClass::smooth : BlockClass::curved;
-  const bool may_be_smooth = (smooth.yes || smooth.unsure) && (!flat.yes || flat.unsure);
-  add(nominal);
-  if (flat.unsure && nominal != BlockClass::flat) add(BlockClass::flat);
-  if (may_be_smooth && nominal != BlockClass::smooth) add(BlockClass::smooth);
-  if (smooth.unsure && nominal != BlockClass::curved) add(BlockClass::curved);
+  const Bounded share = exact(Taps::flatness) * exact(Taps::flatness);
+  const Decision flat = both(unbroken, is_at_most(change.squared_length_varying, share * change.squared_length));
+  const BlockPass plane{BlockClass::flat, exact(1) / length, extent.shear};
+  passes.push_back(flat.yes ? plane : curved);
+  if (flat.unsure) passes.push_back(flat.yes ? curved : plane);
 }
 
 /// The reach is 9/8 of the distance of the farthest tap of any material that scatters, at the block's largest

@@ -17,7 +17,7 @@ namespace dermis::oracle {
 
 inline constexpr int block_px = 16;
 
-enum class BlockClass { flat, smooth, curved };
+enum class BlockClass { flat, curved };
 
 /// How a pass scatters a block.
 struct BlockPass {

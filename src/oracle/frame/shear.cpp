@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <utility>
 
 namespace dermis::oracle {
 
@@ -9,9 +11,27 @@ namespace {
 
 constexpr int fraction_bits = 12;
 constexpr double one = 1 << fraction_bits;
-constexpr int most_px = 32;  // No tap lies farther to the side of its pixel.
+constexpr int full_damping = 1 << 14;  // A range of 4 columns per row would reduce a mean to 0; the largest is 2.
+constexpr int most_px = 32;            // No tap lies farther to the side of its pixel.
 
 }  // namespace
+
+Tangent cross(const Tangent& a, const Tangent& b) {
+  Tangent product;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::size_t j = (i + 1) % 3;
+    const std::size_t k = (i + 2) % 3;
+    product[i] = a[j] * b[k] - a[k] * b[j];
+  }
+  return product;
+}
+
+Bounded length(const Tangent& a) {
+  Bounded squared;
+  for (const Bounded part : a) squared = squared + part * part;
+  // One more rounding covers any order of summation.
+  return square_root(rounded(squared));
+}
 
 Bounded shear_between(const Tangent& along_x, const Tangent& along_y) {
   Bounded mixed;
@@ -38,6 +58,31 @@ BoundedShear whole_shear(Bounded shear) {
   // A device may round a tie to either side.
   const double tie = 0x1p-40;
   return {whole(shear.value), whole(shear.low() - tie), whole(shear.high() + tie)};
+}
+
+BoundedShear damped_mean(std::span<const BoundedShear> shears) {
+  if (shears.empty()) return {};
+  const auto count = static_cast<int>(shears.size());
+  BoundedShear sum;
+  for (const BoundedShear& shear : shears) {
+    sum = {sum.nominal + shear.nominal, sum.lowest + shear.lowest, sum.highest + shear.highest};
+  }
+  const auto extremes = [&](int BoundedShear::*value) {
+    const auto [low, high] = std::minmax_element(shears.begin(), shears.end(),
+                                                 [&](const auto& a, const auto& b) { return a.*value < b.*value; });
+    return std::pair{(*low).*value, (*high).*value};
+  };
+  const auto [least_low, most_low] = extremes(&BoundedShear::lowest);
+  const auto [least, most] = extremes(&BoundedShear::nominal);
+  const auto [least_high, most_high] = extremes(&BoundedShear::highest);
+  const auto damped = [](int mean, int range) { return mean * (full_damping - range) / full_damping; };
+  const int narrowest = std::max(most_low - least_high, 0);
+  const int widest = most_high - least_low;
+  // The further a mean is from 0, the more it changes with the range.
+  const int low = sum.lowest / count;
+  const int high = sum.highest / count;
+  return {damped(sum.nominal / count, most - least), damped(low, low < 0 ? narrowest : widest),
+          damped(high, high > 0 ? narrowest : widest)};
 }
 
 int side_px(int shear, int offset_px) {

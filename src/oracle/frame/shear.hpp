@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 #include <vector>
 
 #include "oracle/math/rounding.hpp"
@@ -11,6 +12,10 @@ namespace dermis::oracle {
 
 /// A change of position per pixel, mm.
 using Tangent = std::array<Bounded, 3>;
+
+Tangent cross(const Tangent& a, const Tangent& b);
+
+Bounded length(const Tangent& a);
 
 /// Returns the shear in columns per row, -1..1, given the tangents of the surface along x and along y.
 Bounded shear_between(const Tangent& along_x, const Tangent& along_y);
@@ -31,6 +36,12 @@ struct BoundedShear {
 
 /// Rounds a shear in columns per row to whole 1/4096.
 BoundedShear whole_shear(Bounded shear);
+
+/// So many neighbours in a row share one shear on curved blocks.
+inline constexpr int shear_run_px = 8;
+
+/// Returns mean (1 - range / 2^14) of the shears of a run, where both divisions truncate as in C; 0 of none.
+BoundedShear damped_mean(std::span<const BoundedShear> shears);
 
 /// Returns how many columns a tap `offset_px` rows below its pixel lies to the right; `shear` is in 1/4096.
 int side_px(int shear, int offset_px);

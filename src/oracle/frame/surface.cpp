@@ -111,6 +111,7 @@ Surface::Surface(const Frame& frame, const FrameImages& images, std::span<const 
       const Material& material = materials[pixel.material];
       const Bounded z_mm = is_there(images.depth) ? view_.depth_mm(images.depth(x, y)) : exact(0);
       pixel.position_mm = view_.position(x, y, z_mm);
+      pixel.slant_mm = view_.slant_mm(x, y, z_mm);
       pixel.width_factor = width_factor(images, material, x, y);
       const Bounded spread = widest(pixel.width_factor, material.taps);
       for (const Axis axis : {horizontal, vertical}) {
@@ -128,31 +129,21 @@ Surface::Surface(const Frame& frame, const FrameImages& images, std::span<const 
         pixel.segment_mm[axis] = exact(pixel.covered) * exact(pixel.covered) * segment(x, y, axis);
     }
   }
-}
-
-/// The differences of depth to both neighbours of the material along an axis, mm. If there is only one, both are the
-/// difference to it.
-struct Surface::DepthSteps {
-  bool has_previous, has_next;
-  Bounded backward, forward;
-};
-
-Surface::DepthSteps Surface::depth_steps(int x, int y, Axis axis) const {
-  const int dx = axis == horizontal ? 1 : 0;
-  const int dy = 1 - dx;
-  const SurfacePixel& pixel = at(x, y);
-  DepthSteps steps{shows(pixel.material, x - dx, y - dy), shows(pixel.material, x + dx, y + dy), exact(0), exact(0)};
-  const Bounded z = pixel.position_mm[2];
-  if (steps.has_next) steps.forward = at(x + dx, y + dy).position_mm[2] - z;
-  if (steps.has_previous) steps.backward = z - at(x - dx, y - dy).position_mm[2];
-  if (!steps.has_next) steps.forward = steps.backward;
-  if (!steps.has_previous) steps.backward = steps.forward;
-  return steps;
+  for (int y = 0; sheared_ && y < height_; ++y) {
+    for (int run = 0; run < runs_per_row(); ++run) shears_.push_back(run_shear(run, y));
+  }
 }
 
 Bounded Surface::depth_slope(int x, int y, Axis axis) const {
-  const auto [has_previous, has_next, backward, forward] = depth_steps(x, y, axis);
-  if (!has_previous || !has_next) return forward;
+  const int dx = axis == horizontal ? 1 : 0;
+  const int dy = 1 - dx;
+  const SurfacePixel& pixel = at(x, y);
+  const bool has_previous = shows(pixel.material, x - dx, y - dy);
+  const bool has_next = shows(pixel.material, x + dx, y + dy);
+  const Bounded z = pixel.position_mm[2];
+  const Bounded forward = has_next ? at(x + dx, y + dy).position_mm[2] - z : exact(0);
+  const Bounded backward = has_previous ? z - at(x - dx, y - dy).position_mm[2] : exact(0);
+  if (!has_previous || !has_next) return has_next ? forward : backward;
   // The slope is continuous in both differences, so that a device that decides otherwise is off by no more than they
   // are.
   const Bounded smaller = std::abs(forward.value) < std::abs(backward.value) ? forward : backward;
@@ -160,87 +151,70 @@ Bounded Surface::depth_slope(int x, int y, Axis axis) const {
   return {same_sign ? smaller.value : 0, std::max(forward.error, backward.error)};
 }
 
-/// Returns how the difference of depth along one axis changes along the other one, mm; 0 without both pixels on the
-/// diagonal.
-Bounded Surface::cross_step(int x, int y, const DepthSteps& along_x, const DepthSteps& along_y) const {
-  const SurfacePixel& pixel = at(x, y);
-  if (!shows(pixel.material, x - 1, y - 1) || !shows(pixel.material, x + 1, y + 1)) return exact(0);
-  const Bounded z = pixel.position_mm[2];
-  const Bounded diagonal = (at(x + 1, y + 1).position_mm[2] - z) - (z - at(x - 1, y - 1).position_mm[2]);
-  return exact(0.5) * (diagonal - (along_x.forward - along_x.backward) - (along_y.forward - along_y.backward));
-}
-
-// Along x the tangent is T = (size + ray g, ray' g, g), and its change per pixel is (2 size' g + ray h, ray' h, h),
-// where g and h are the first and the second difference of depth, and size' is the change of the ray per pixel. Under a
-// shear s, which moves s columns per row, g and h are the differences along (s, 1), and s times the tangent along x is
-// added.
-Bend Surface::bend(int x, int y, Axis axis, const BoundedShear& shear, float px_per_mm) const {
-  const SurfacePixel& pixel = at(x, y);
-  const DepthSteps steps = depth_steps(x, y, axis);
-  Bounded g = exact(0.5) * (steps.forward + steps.backward);
-  Bounded h = steps.forward - steps.backward;
-  const Bounded side = axis == vertical ? shear.columns() : exact(0);
-  if (!is_exactly(side, 0)) {
-    const DepthSteps across = depth_steps(x, y, horizontal);
-    g = g + side * (exact(0.5) * (across.forward + across.backward));
-    h = h + side * (side * (across.forward - across.backward) + exact(2) * cross_step(x, y, across, steps));
-  }
-  Bounded length2 = g * g;
-  Bounded growth = g * h;
-  for (const Axis i : {horizontal, vertical}) {
-    const Bounded ray = view_.is_perspective() ? pixel.position_mm[i] / pixel.position_mm[2] : exact(0);
-    const Bounded pixels = i == axis ? exact(1) : side;
-    const Bounded change = ray * g + pixels * view_.size_mm(i, pixel.position_mm[2]);
-    const Bounded change_of_change = ray * h + exact(2) * pixels * view_.growth_mm(i, g);
-    length2 = length2 + change * change;
-    growth = growth + change * change_of_change;
-  }
-  const Bounded square = exact(px_per_mm) * exact(px_per_mm);
-  return {square * rounded(length2, 2) - exact(1), square * rounded(growth, 2)};
+/// Returns the change of x or y with depth along the ray through a pixel.
+Bounded Surface::ray(int x, int y, Axis axis) const {
+  const auto& position_mm = at(x, y).position_mm;
+  return view_.is_perspective() ? position_mm[axis] / position_mm[2] : exact(0);
 }
 
 // One pixel on the position changes by the pixel's size along the axis, and by what the ray runs over the change of
 // depth.
-Tangent Surface::tangent(int x, int y, Axis axis) const { return tangent(x, y, axis, depth_slope(x, y, axis)); }
-
 Tangent Surface::tangent(int x, int y, Axis axis, Bounded slope) const {
-  const SurfacePixel& pixel = at(x, y);
   Tangent change;
   change[2] = slope;
   for (const Axis i : {horizontal, vertical}) {
-    const Bounded ray = view_.is_perspective() ? pixel.position_mm[i] / pixel.position_mm[2] : exact(0);
-    change[i] = ray * change[2];
-    if (i == axis) change[i] = change[i] + view_.size_mm(i, pixel.position_mm[2]);
+    change[i] = ray(x, y, i) * slope;
+    if (i == axis) change[i] = change[i] + view_.size_mm(i, at(x, y).position_mm[2]);
   }
   return change;
 }
 
-Bounded patch_area(const Tangent& x, const Tangent& y) {
-  Bounded sum;
-  for (int i = 0; i < 3; ++i) {
-    const int j = (i + 1) % 3;
-    const int k = (i + 2) % 3;
-    const Bounded part = x[j] * y[k] - x[k] * y[j];
-    sum = sum + part * part;
+/// Returns the normal of the patch of surface in a pixel, as long as its area, mm^2. A device may cross the tangents or
+/// multiply their product out, which cancels elsewhere, so that each part has the larger error of the two.
+Tangent Surface::normal(int x, int y) const {
+  const Bounded slope_x = depth_slope(x, y, horizontal);
+  const Bounded slope_y = depth_slope(x, y, vertical);
+  const Bounded size_x = view_.size_mm(horizontal, at(x, y).position_mm[2]);
+  const Bounded size_y = view_.size_mm(vertical, at(x, y).position_mm[2]);
+  const Tangent multiplied_out{
+      slope_x * size_y, slope_y * size_x,
+      size_x * (size_y + ray(x, y, vertical) * slope_y) + size_y * ray(x, y, horizontal) * slope_x};
+  Tangent normal = cross(tangent(x, y, horizontal, slope_x), tangent(x, y, vertical, slope_y));
+  for (std::size_t i = 0; i < 3; ++i) normal[i].error = std::max(normal[i].error, multiplied_out[i].error);
+  return normal;
+}
+
+Bounded patch_area(const Tangent& x, const Tangent& y) { return length(cross(x, y)); }
+
+BoundedShear Surface::run_shear(int run, int y) const {
+  std::vector<BoundedShear> shears;
+  for (int x = shear_run_px * run; x < std::min(shear_run_px * (run + 1), width_); ++x) {
+    if (at(x, y).material < 0) continue;
+    shears.push_back(whole_shear(shear_between(tangent(x, y, horizontal), tangent(x, y, vertical))));
   }
-  return square_root(rounded(sum));
+  return damped_mean(shears);
 }
 
 BoundedShear Surface::shear(int x, int y) const {
   if (!sheared_) return {};
-  return whole_shear(shear_between(tangent(x, y, horizontal), tangent(x, y, vertical)));
+  return shears_[static_cast<std::size_t>(y) * runs_per_row() + x / shear_run_px];
 }
 
+// Across x the patch of a pixel is as long as its area over its length along x, whatever the angle of its sides.
 Bounded Surface::segment(int x, int y, Axis axis) const {
-  Tangent along = tangent(x, y, axis);
-  if (axis == vertical && sheared_) {
-    const Tangent across = tangent(x, y, horizontal);
-    const Bounded shear = shear_between(across, along);
-    for (int i = 0; i < 3; ++i) along[i] = along[i] + shear * across[i];
-  }
-  Bounded sum = exact(0);
-  for (const Bounded part : along) sum = sum + part * part;
-  return square_root(sum);
+  if (axis == horizontal || !sheared_) return length(tangent(x, y, axis));
+  return length(normal(x, y)) / length(tangent(x, y, horizontal));
+}
+
+// With e = |P|^2 / z the squared distance is (z - z') (e - e') + z z' |P / z - P' / z'|^2, and if orthographic
+// (z - z')^2 + (x - x')^2 + (y - y')^2.
+Bounded Surface::distance2_mm2(int x, int y, int other_x, int other_y) const {
+  const SurfacePixel& a = at(x, y);
+  const SurfacePixel& b = at(other_x, other_y);
+  if (&a == &b) return exact(0);
+  const Bounded across2 = view_.across2_mm2(other_x - x, other_y - y, a.position_mm[2], b.position_mm[2]);
+  // Both products and their sum may be flushed to zero.
+  return flushed((b.position_mm[2] - a.position_mm[2]) * (b.slant_mm - a.slant_mm) + across2, 3);
 }
 
 Picture Surface::touched() const {

@@ -22,6 +22,7 @@ struct SurfacePixel {
   bool wide_unsure = false;  ///< it is so close to half a pixel that a float32 device may decide otherwise
   double covered = 1;        ///< m, the share of the pixel that the material covers, above 0
   std::array<Bounded, 3> position_mm{};
+  Bounded slant_mm{};                            ///< see View::slant_mm
   std::array<Bounded, 2> px_per_mm{};            ///< along x and y
   std::array<Bounded, 3> width_factor{};         ///< k: the profile is R(r / k) / k^2
   std::array<Bounded, 2> segment_mm{};           ///< length of surface in the pixel along each pass, times m^2
@@ -32,19 +33,12 @@ struct SurfacePixel {
   bool takes_light_unsure() const { return wide_unsure && !bad; }
 };
 
-/// How much the surface about a pixel differs from a plane parallel to the screen that is seen at some number of pixels
-/// per mm: q and k of Taps, before they are clamped.
-struct Bend {
-  Bounded stretch;  ///< q
-  Bounded skew;     ///< k
-};
-
 /// Returns the area of the patch of surface in a pixel, mm^2, given its sides.
 Bounded patch_area(const Tangent& x, const Tangent& y);
 
 class Surface {
  public:
-  /// If `sheared`, the vertical pass runs along the shear of each pixel, not along y.
+  /// If `sheared`, the vertical pass runs along the shear of each run of pixels, not along y.
   /// Throws Error(usage) if there is no material, or several and no material ids, Error(role_missing) if a width
   /// follows an albedo that is not there.
   Surface(const Frame& frame, const FrameImages& images, std::span<const Material> materials, bool sheared);
@@ -68,20 +62,22 @@ class Surface {
   /// Returns the change of position per pixel along an axis, mm, where the depth changes by `slope`, mm per pixel.
   Tangent tangent(int x, int y, Axis axis, Bounded slope) const;
 
-  /// Returns the shear of a pixel by its own tangents; 0 if the surface is not sheared.
+  /// Returns the shear of the run of pixels in which a pixel lies; 0 if the surface is not sheared. See METHODS.md,
+  /// "The separable passes".
   BoundedShear shear(int x, int y) const;
 
-  /// Compares the surface at a pixel with a plane seen at `px_per_mm`; `shear` is that of the vertical pass.
-  Bend bend(int x, int y, Axis axis, const BoundedShear& shear, float px_per_mm) const;
+  /// Returns the squared distance of two pixels, mm^2.
+  Bounded distance2_mm2(int x, int y, int other_x, int other_y) const;
 
   /// Returns 1 channel, which is 1 where a pixel takes light and 0 elsewhere.
   Picture touched() const;
 
  private:
-  struct DepthSteps;
-  DepthSteps depth_steps(int x, int y, Axis axis) const;
-  Bounded cross_step(int x, int y, const DepthSteps& along_x, const DepthSteps& along_y) const;
-  Tangent tangent(int x, int y, Axis axis) const;
+  Bounded ray(int x, int y, Axis axis) const;
+  Tangent tangent(int x, int y, Axis axis) const { return tangent(x, y, axis, depth_slope(x, y, axis)); }
+  Tangent normal(int x, int y) const;
+  int runs_per_row() const { return (width_ + shear_run_px - 1) / shear_run_px; }
+  BoundedShear run_shear(int run, int y) const;
   Bounded segment(int x, int y, Axis axis) const;
 
   bool sheared_;
@@ -89,6 +85,7 @@ class Surface {
   int height_;
   View view_;
   std::vector<SurfacePixel> pixels_;
+  std::vector<BoundedShear> shears_;  ///< of the runs, row by row
 };
 
 }  // namespace dermis::oracle

@@ -38,6 +38,20 @@ std::array<Bounded, 3> View::position(int x, int y, Bounded z_mm) const {
   return {coordinate(horizontal, x, z_mm), coordinate(vertical, y, z_mm), z_mm};
 }
 
+Bounded View::slant_mm(int x, int y, Bounded z_mm) const {
+  if (!is_perspective()) return z_mm;
+  const Bounded ray_x = ray(horizontal, x + 0.5);
+  const Bounded ray_y = ray(vertical, y + 0.5);
+  return z_mm * (exact(1) + ray_y * ray_y + ray_x * ray_x);
+}
+
+Bounded View::across2_mm2(int dx, int dy, Bounded z_mm, Bounded other_z_mm) const {
+  const Bounded aspect = as_float(scale(horizontal)) / as_float(scale(vertical));
+  const Bounded squared_px = exact(dx * dx) + aspect * aspect * exact(dy * dy);
+  const Bounded size = (is_perspective() ? exact(1) : as_float(mm_per_unit_)) / as_float(scale(horizontal));
+  return squared_px * (is_perspective() ? size * size * z_mm * other_z_mm : size * size);
+}
+
 Vec3 View::tangent(Axis axis, double x_px, double y_px, double z_mm, double dz_mm) const {
   Vec3 tangent{0, 0, dz_mm};
   if (is_perspective()) {

@@ -39,6 +39,13 @@ class View {
   /// Returns the point at depth z_mm that is seen at the centre of a pixel, with the rounding of a device.
   std::array<Bounded, 3> position(int x, int y, Bounded z_mm) const;
 
+  /// Returns |P|^2 / z, mm, of the point P at depth z_mm that is seen at the centre of a pixel; z if orthographic.
+  Bounded slant_mm(int x, int y, Bounded z_mm) const;
+
+  /// Returns the squared distance, mm^2, that two points at the depths z_mm which are seen (dx, dy) pixels apart have
+  /// across the rays: sqrt(z z') times that of the rays where z = 1 mm if perspective, that in x and y if orthographic.
+  Bounded across2_mm2(int dx, int dy, Bounded z_mm, Bounded other_z_mm) const;
+
   /// Returns the change of unproject() per pixel along an axis where the depth changes by dz_mm per pixel.
   Vec3 tangent(Axis axis, double x_px, double y_px, double z_mm, double dz_mm) const;
 

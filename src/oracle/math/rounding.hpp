@@ -47,6 +47,9 @@ inline Bounded rounded(Bounded a, double count = 1) {
   return {a.value, a.error + count * unit_roundoff * a.magnitude()};
 }
 
+/// Returns `a` where a device may have flushed `count` parts of it to zero.
+inline Bounded flushed(Bounded a, double count = 1) { return {a.value, a.error + count * smallest_normal}; }
+
 inline bool is_exactly(Bounded a, double value) { return a.error == 0 && a.value == value; }
 
 inline Bounded operator+(Bounded a, Bounded b) { return rounded({a.value + b.value, a.error + b.error}); }

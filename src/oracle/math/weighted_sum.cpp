@@ -1,5 +1,6 @@
 #include "oracle/math/weighted_sum.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -50,7 +51,7 @@ void WeightedSum::scale(Bounded factor) {
 Bounded WeightedSum::mean(Bounded if_weightless) const {
   double weights = 0;
   double sum = 0;
-  for (const auto& [w, x] : taps_) {
+  for (const auto& [w, x, least_weight] : taps_) {
     weights += w.value;
     sum += w.value * x.value;
   }
@@ -58,11 +59,13 @@ Bounded WeightedSum::mean(Bounded if_weightless) const {
   const double mean = sum / weights;
 
   double weight_errors = 0;
+  double least_sum = 0;
   double propagated = 0;
   double weight_magnitudes = 0;
   double magnitudes = 0;
-  for (const auto& [w, x] : taps_) {
+  for (const auto& [w, x, least_weight] : taps_) {
     weight_errors += error_of(w);
+    least_sum += least_weight - smallest_normal;
     propagated += error_of(w) * std::abs(x.value - mean) + w.magnitude() * x.error + smallest_normal;
     weight_magnitudes += w.magnitude();
     magnitudes += w.magnitude() * x.magnitude();
@@ -70,7 +73,7 @@ Bounded WeightedSum::mean(Bounded if_weightless) const {
   const auto n = static_cast<double>(taps_.size());
   const double above = (n + 1) * unit_roundoff * magnitudes;
   const double below = n * unit_roundoff * weight_magnitudes;
-  const double least = std::abs(weights) - weight_errors - below;
+  const double least = std::max(std::abs(weights) - weight_errors, least_sum) - below;
   if (!(least > 0)) return {mean, std::numeric_limits<double>::infinity()};
   return rounded({mean, (propagated + above + below * std::abs(mean)) / least}, division_roundings);
 }
@@ -90,7 +93,7 @@ Bounded WeightedSum::about(Bounded x_p, double total) const {
   double propagated = 0;
   double magnitudes = std::abs(total) * x_p.magnitude();
   double flushed = smallest_normal * (2 + x_p.magnitude());
-  for (const auto& [w, x] : taps_) {
+  for (const auto& [w, x, least_weight] : taps_) {
     value += w.value * (x.value - x_p.value);
     missing -= w.value;
     weight_errors += error_of(w);

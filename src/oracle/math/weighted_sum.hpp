@@ -15,12 +15,14 @@ Bounded sum_of(std::span<const Bounded> values);
 class WeightedSum {
  public:
   void clear() { taps_.clear(); }
-  void add(Bounded weight, Bounded x) { taps_.push_back({weight, x}); }
+  void add(Bounded weight, Bounded x) { add(weight, x, weight.low()); }
+  /// No device has a weight below `least_weight`, whatever the error on the other side.
+  void add(Bounded weight, Bounded x, double least_weight) { taps_.push_back({weight, x, least_weight}); }
 
   /// Returns the sum of the weights.
   Bounded weights() const;
 
-  /// Multiplies all weights.
+  /// Multiplies all weights by a factor, for about() alone.
   void scale(Bounded factor);
 
   /// Returns sum w x / sum w, or `if_weightless` if the weights sum to zero.
@@ -34,6 +36,7 @@ class WeightedSum {
   struct Tap {
     Bounded weight;
     Bounded x;
+    double least_weight;
   };
   std::vector<Tap> taps_;
 };

@@ -15,7 +15,7 @@ struct Choice {
   int flat_part;       ///< the part of the level whose weights a flat block takes; else 0
   int level;           ///< -1: the kernel is too narrow for taps
   int rotated;         ///< how many of the level's pairs are rotated, the innermost first
-  BoundedShear shear;  ///< of the vertical pass; 0 on a curved block, where each pixel has its own
+  BoundedShear shear;  ///< of the vertical pass; 0 on a curved block, where each run of pixels has its own
 
   bool operator==(const Choice&) const = default;
 };

@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -55,6 +56,13 @@ struct SeparableFrame {
   const BoundedPicture& light;  ///< before the passes
 };
 
+/// Returns 1 / max(1, weights), which is bounded whatever the error of the weights.
+Bounded limit_of(Bounded weights) {
+  const auto at = [](double its) { return 1 / std::max(its, 1.0); };
+  const double value = at(weights.value);
+  return rounded({value, std::max(at(weights.low()) - value, value - at(weights.high()))}, division_roundings);
+}
+
 /// One pass over a frame, along one axis. The horizontal one makes a picture of each term, the vertical one reads those
 /// and makes one picture of the sum over terms.
 class Pass {
@@ -74,10 +82,9 @@ class Pass {
   Outcome without_taps(int x, int y) const;
   Outcome with_taps(int x, int y, const Choice& choice);
   void add_center(int x, int y, const TapWeights& weights);
-  void add_parts(WeightedSum& sum, const WeightParts& parts, Bounded light);
   std::vector<PixelOffset> sheared(int x, int y, int offset_px, const Choice& choice) const;
   struct Reading;
-  Reading read(int x, int y, const TapWeights& weights, std::size_t pair, int side, PixelOffset offset) const;
+  Reading read(int x, int y, const TapWeights& weights, std::size_t pair, PixelOffset offset) const;
   void add_tap(std::span<const Reading> readings, const TapWeights& weights);
   Outcome finished(const Outcome& values, std::span<const Term> terms) const;
 
@@ -173,13 +180,13 @@ Outcome Pass::with_taps(int x, int y, const Choice& choice) {
         offsets = sheared(x, y, offset_px, choice);
       }
       std::vector<Reading> readings;
-      for (const PixelOffset offset : offsets) readings.push_back(read(x, y, weights, pair, side, offset));
+      for (const PixelOffset offset : offsets) readings.push_back(read(x, y, weights, pair, offset));
       add_tap(readings, weights);
     }
   }
   BoundedRgb limit{exact(1), exact(1), exact(1)};  // of the weights of differences, on a curved surface
   if (choice.block_class == BlockClass::curved) {
-    for (int c = 0; c < 3; ++c) limit[c] = exact(1) / larger(sums_[0][c].weights(), exact(1));
+    for (int c = 0; c < 3; ++c) limit[c] = limit_of(sums_[0][c].weights());
   }
   Outcome values;
   for (std::size_t t = 0; t < taps.terms.size(); ++t) {
@@ -200,13 +207,10 @@ void Pass::add_center(int x, int y, const TapWeights& weights) {
   const std::span<const Term> terms = taps_at(x, y).terms;
   for (std::size_t t = 0; t < terms.size(); ++t) {
     if (!terms[t].normalised) continue;
-    for (int c = 0; c < 3; ++c) add_parts(sums_[t][c], weights.center(t, c), inputs_[t].at(x, y, c));
-  }
-}
-
-void Pass::add_parts(WeightedSum& sum, const WeightParts& parts, Bounded light) {
-  for (const Bounded& part : parts) {
-    if (!is_exactly(part, 0)) sum.add(part, light);
+    for (int c = 0; c < 3; ++c) {
+      const Bounded weight = weights.center(t, c);
+      sums_[t][c].add(weight, inputs_[t].at(x, y, c), std::max(weight.low(), weights.least_center()));
+    }
   }
 }
 
@@ -220,14 +224,12 @@ std::vector<PixelOffset> Pass::sheared(int x, int y, int offset_px, const Choice
   return offsets;
 }
 
-Pass::Reading Pass::read(int x, int y, const TapWeights& weights, std::size_t pair, int side,
-                         PixelOffset offset) const {
+Pass::Reading Pass::read(int x, int y, const TapWeights& weights, std::size_t pair, PixelOffset offset) const {
   Reading reading{false, {}, x + offset[0], y + offset[1]};
   if (!surface_.shows(surface_.at(x, y).material, reading.x, reading.y)) return reading;
-  const SurfacePixel& tap = surface_.at(reading.x, reading.y);
-  if (!tap.gives_light()) return reading;
+  if (!surface_.at(reading.x, reading.y).gives_light()) return reading;
   reading.is_there = true;
-  reading.place = weights.place(tap, pair, side);
+  reading.place = weights.place(reading.x, reading.y, pair);
   return reading;
 }
 
@@ -235,19 +237,20 @@ Pass::Reading Pass::read(int x, int y, const TapWeights& weights, std::size_t pa
 void Pass::add_tap(std::span<const Reading> readings, const TapWeights& weights) {
   for (std::size_t t = 0; t < sums_.size(); ++t) {
     for (int c = 0; c < 3; ++c) {
-      WeightParts parts{};
+      Bounded weight;
+      double least_weight = std::numeric_limits<double>::infinity();
       Bounded light;
       bool has_light = false;
       for (const Reading& reading : readings) {
-        const WeightParts here = reading.is_there ? weights.tap(reading.place, t, c) : WeightParts{};
-        const bool is_first = &reading == &readings.front();
-        for (std::size_t i = 0; i < parts.size(); ++i) parts[i] = is_first ? here[i] : including(parts[i], here[i]);
+        const Bounded here = reading.is_there ? weights.tap(reading.place, t, c) : exact(0);
+        weight = &reading == &readings.front() ? here : including(weight, here);
+        least_weight = std::min(least_weight, here.low());
         if (!reading.is_there) continue;
         const Bounded light_here = inputs_[t].at(reading.x, reading.y, c);
         light = has_light ? including(light, light_here) : light_here;
         has_light = true;
       }
-      if (has_light) add_parts(sums_[t][c], parts, light);
+      if (has_light && !is_exactly(weight, 0)) sums_[t][c].add(weight, light, least_weight);
     }
   }
 }

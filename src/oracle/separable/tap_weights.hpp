@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <limits>
 
 #include "dermis/tap_tables.hpp"
 #include "oracle/frame/surface.hpp"
@@ -11,37 +12,38 @@
 
 namespace dermis::oracle {
 
-/// Parts of a weight, which a device may sum up one by one.
-using WeightParts = std::array<Bounded, 3>;
-
-/// The weights of one pass at one pixel: w_0 and w_i of the comment at Taps.
+/// The weights of one pass at one pixel: see CubicWeight, and TapLevel::flat_weights.
 class TapWeights {
  public:
   /// Keeps references to the pixel at (x, y) of `surface` and to `taps`.
-  TapWeights(Axis axis, const Surface& surface, int x, int y, const Taps& taps, const Choice& choice);
+  TapWeights(Axis axis, const Surface& surface, int x, int y, const Taps& taps, const Choice& choice)
+      : axis_(axis), surface_(surface), x_(x), y_(y), taps_(taps), level_(taps.levels[choice.level]), choice_(choice) {}
 
-  /// The pixel that a tap falls on.
+  /// The pixel that a tap of some pair falls on. On a flat block only the pair is known.
   struct Place {
-    std::size_t pair;  ///< of the tap
-    int side;          ///< of the centre: -1 or 1
+    std::size_t pair;
     Bounded distance2_mm2;
-    Bounded stretch;  ///< The tap stands for so many times length_mm of surface.
+    Bounded segment_mm;
   };
-  Place place(const SurfacePixel& tap, std::size_t pair, int side) const;
+  Place place(int x, int y, std::size_t pair) const;
 
-  WeightParts center(std::size_t term, int c) const;
-  WeightParts tap(const Place& place, std::size_t term, int c) const;
+  Bounded center(std::size_t term, int c) const;
+  double least_center() const { return is_flat() ? -std::numeric_limits<double>::infinity() : least_centre_weight; }
+  Bounded tap(const Place& place, std::size_t term, int c) const;
 
  private:
-  WeightParts plane_weight(std::size_t point, std::size_t term, int c) const;
-  Bounded by_distance(const Place& place, std::size_t term, int c) const;
+  bool is_flat() const { return choice_.block_class == BlockClass::flat; }
+  Bounded width_factor(int c) const { return surface_.at(x_, y_).width_factor[c]; }
+  /// The centre is row 0 of a level's weights, the first pair row 1.
+  std::size_t index(std::size_t row, std::size_t term) const { return row * taps_.terms.size() + term; }
+  Bounded flat_weight(std::size_t row, std::size_t term, int c) const;
 
   Axis axis_;
-  const SurfacePixel& pixel_;
+  const Surface& surface_;
+  int x_, y_;
   const Taps& taps_;
   const TapLevel& level_;
   Choice choice_;
-  Bend bend_{};  ///< on a smooth block
 };
 
 }  // namespace dermis::oracle

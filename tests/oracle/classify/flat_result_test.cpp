@@ -1,4 +1,4 @@
-// The light of flat and smooth blocks, computed by hand.
+// The light of flat blocks, computed by hand.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -76,8 +76,8 @@ TEST_CASE("on a plane parallel to the screen the passes are plain convolutions",
   Random random(41);
   Material material = tiny_material();
   material.taps.radius_mm = 5;
-  material.taps.levels = {made_level(1, {1, 2, 5}, 0)};  // Only the flat weights scatter light.
-  add_term(material.taps, tiny_difference(0.125, 0.5), {});
+  set_levels(material.taps, {made_level(1, {1, 2, 5})}, alike({}, {}));  // Only the flat weights scatter light.
+  add_term(material.taps, difference_term(0.5), alike({}, {}));
   material.taps.terms[1].scale = grey(-0.75);
   TapLevel& level = material.taps.levels[0];
   lay_flat(level, material.taps.terms, [&](std::size_t pair, std::size_t t, std::size_t) {
@@ -109,40 +109,10 @@ TEST_CASE("on a plane parallel to the screen the passes are plain convolutions",
   }
 }
 
-TEST_CASE("on a smooth block the weights change with the pixel's own surface", "[flat]") {
-  // The depth is 0.05 x^2 beside a sharp bend, all within one block, so that slopes go from 0 to 0.8.
-  const auto depth_mm = [](int x) { return x < 8 ? 0.05 * x * x : 3.2 + 0.8 * (x - 8); };
-  const MadeFrame made = row_of_blocks(16, depth_mm);
-  Material material = telling_material(5);
-  const int level = level_for(5 / std::hypot(1, 0.4));
-  TapLevel& its = material.taps.levels[static_cast<std::size_t>(level)];
-  its = made_level(0.875, {1, 3}, 0);
-  lay_flat(its, material.taps.terms, [](std::size_t pair, std::size_t, std::size_t) { return pair == 0 ? 0.25 : 0.1; });
-  lay_smooth(
-      its, 1, [](std::size_t pair, std::size_t, std::size_t) { return pair == 0 ? -0.125 : 0.0625; },
-      [](std::size_t pair, std::size_t, std::size_t) { return pair == 0 ? 0.5 : 0.75; });
-  const Reference reference = run_as_is(made, std::span(&material, 1));
-  const auto x2 = [](int x) { return static_cast<double>(x * x); };
-  for (const int x : {4, 5, 8}) {
-    const double g = (depth_mm(x + 1) - depth_mm(x - 1)) / 2;
-    const double h = depth_mm(x + 1) - 2 * depth_mm(x) + depth_mm(x - 1);
-    const double square = 0.875 * 0.875;
-    const double q = std::clamp(square * (1 + g * g) - 1, -0.75, 0.75);
-    const double k = std::clamp(square * g * h, -0.5 / 3, 0.5 / 3);
-    const double near_weight = 0.25 - 0.125 * q;
-    const double far_weight = 0.1 + 0.0625 * q;
-    const double expected = x2(x) + near_weight * (x2(x + 1) + x2(x - 1) - 2 * x2(x)) +
-                            far_weight * (x2(x + 3) + x2(x - 3) - 2 * x2(x)) + k * 0.5 * (x2(x + 1) - x2(x - 1)) +
-                            k * 0.75 * (x2(x + 3) - x2(x - 3));
-    CHECK(reference.scattered(x, 2) == Approx(expected).epsilon(1e-6));
-    CHECK(std::abs(k) > 0.01);
-  }
-}
-
 TEST_CASE("a flat block seen at such an angle that the kernel is narrow has no taps", "[flat]") {
   // On the tilted plane |T| = sqrt(2), so that the radius is 0.42 px.
   Material material = telling_material(0.6);
-  add_term(material.taps, tiny_difference(0.25, 2), {});
+  add_term(material.taps, difference_term(2), alike({}, {}));
   lay_flat(material.taps.levels[3], material.taps.terms,
            [](std::size_t pair, std::size_t, std::size_t) { return pair == 0 ? 0.25 : 0; });
   for (const double g : {0.0, 1.0}) {

@@ -46,7 +46,7 @@ TEST_CASE("a flat block leaves bad light out and divides by what is left", "[bad
 
 TEST_CASE("a difference term counts bad taps as the pixel", "[bad_pixels]") {
   Material material = tiny_material();
-  add_term(material.taps, tiny_difference(0.125, 1), {{1, 1, 1}, {}});
+  add_term(material.taps, difference_term(1), tiny_rows(1, 0.125));
   for (const bool flat : {true, false}) {
     MadeFrame made = three_pixels();
     made.light[7] = nan;
@@ -69,7 +69,7 @@ TEST_CASE("the depth of a bad pixel counts for what is flat", "[bad_pixels]") {
 TEST_CASE("the width of a bad pixel counts for the level of its block", "[bad_pixels]") {
   Material material = tiny_material();
   material.taps.radius_mm = 0.54;
-  material.taps.levels = {made_level(1, {}, 1), made_level(1, {1}, 1)};
+  set_levels(material.taps, {made_level(1, {}), made_level(1, {1})}, tiny_rows(0.5, 0.25));
   MadeFrame made = three_pixels();
   made.mask = {0.95F, 0.95F, 1};
   made.light[7] = nan;
@@ -79,23 +79,24 @@ TEST_CASE("the width of a bad pixel counts for the level of its block", "[bad_pi
 }
 
 TEST_CASE("the depth of a bad pixel counts for the slope of its neighbours", "[bad_pixels]") {
-  // The middle has the smaller of both slopes, 1/4, which is that towards the bad pixel.
+  // The middle has the smaller of both slopes, 1/4, which is that towards the bad pixel. The first pixel has 1/2.
   MadeFrame made = never_flat(three_pixels());
   made.depth = {0, 0.5F, 0.75F};
   made.light[8] = nan;
   Material material = tiny_material();
-  const RadialTable& falloff = material.taps.terms[0].falloff;
-  const double near = value_of(falloff, 0, 1.25) * std::hypot(1, 0.25);
-  CHECK(run(made, tiny_material()).scattered(0, 0) == Approx((0.5 * 1 + near * 10) / (0.5 + near)));
+  const double near = 0.25 / 1.25 * std::hypot(1, 0.25);
+  const double centre = 1 - 0.5 / std::hypot(1, 0.5);
+  CHECK(run(made, tiny_material()).scattered(0, 0) == Approx((centre * 1 + near * 10) / (centre + near)));
   // Where the albedo is bad and the width follows it, the kernel is unknown and there is no surface. s(0.8) = 1.1.
   made = three_pixels();
   made.depth = {0, 0.5F, 0.75F};
   made.albedo.assign(9, 0.8F);
   made.albedo[8] = nan;
-  CHECK(run(never_flat(made), material).scattered(0, 0) == Approx((0.5 * 1 + near * 10) / (0.5 + near)));
+  CHECK(run(never_flat(made), material).scattered(0, 0) == Approx((centre * 1 + near * 10) / (centre + near)));
   material.width_follows_albedo = true;
-  const double far = 1.1 * value_of(falloff, 0, 1.25 * 1.21) * std::hypot(1, 0.5);
-  CHECK(run(made, material).scattered(0, 0) == Approx((0.5 * 1 + far * 10) / (0.5 + far)));
+  const double far = 1.1 * 0.25 / (1.25 * 1.21) * std::hypot(1, 0.5);
+  const double narrower = 1 - 0.5 / (1.1 * std::hypot(1, 0.5));
+  CHECK(run(made, material).scattered(0, 0) == Approx((narrower * 1 + far * 10) / (narrower + far)));
 }
 
 TEST_CASE("the surface integral leaves bad pixels out", "[bad_pixels]") {

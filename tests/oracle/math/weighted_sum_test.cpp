@@ -156,6 +156,15 @@ TEST_CASE("where all light is the same, errors of the weights do not count", "[w
   CHECK(sum.about(exact(2.1), 1).error > 1e-3);
 }
 
+TEST_CASE("a mean is bounded where its weights are known to be positive", "[weighted_sum]") {
+  // The weights are 1/8 to 3/8 and 0 to 1/4, so that the mean lies in 1..5/3, and the least sum is 1/8.
+  WeightedSum sum;
+  sum.add({0.125, 0.25}, exact(1), 0.125);
+  sum.add({0, 0.25}, exact(2), 0);
+  CHECK(sum.mean({}).value == 1);
+  CHECK(sum.mean({}).error == Approx(0.25 * (2 - 1) / 0.125).epsilon(1e-4));
+}
+
 TEST_CASE("a mean of weights that may cancel has no bound", "[weighted_sum]") {
   WeightedSum sum;
   sum.add({0.5, 0.01}, exact(2));

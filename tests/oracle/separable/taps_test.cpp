@@ -41,15 +41,11 @@ TEST_CASE("the vertical pass takes what the horizontal one leaves", "[separable]
 
 TEST_CASE("depth lengthens distances and the surface under a pixel", "[separable]") {
   MadeFrame made = three_pixels();
-  made.depth = {std::sqrt(0.5F), 0, 1.25F};  // r^2 = 1.5 to the left, 2.56 to the right
-  const double low = static_cast<double>(std::sqrt(0.5F));
-  const double step = 1.25;
-  const Material material = tiny_material();
-  const RadialTable& falloff = material.taps.terms[0].falloff;
-  const double left = value_of(falloff, 0, 1.5) * std::hypot(1, low);
-  const double right = value_of(falloff, 0, 1 + step * step) * std::hypot(1, step);
-  const Reference reference = run(made, material);
-  CHECK(reference.scattered(1, 0) == Approx((0.5 * 10 + left * 1 + right * 100) / (0.5 + left + right)).epsilon(1e-6));
+  made.depth = {std::sqrt(0.5F), 0, 1.25F};  // d^2 = 1.5 to the left, 2.5625 to the right
+  const double left = 0.25 / 1.5 * std::hypot(1, static_cast<double>(std::sqrt(0.5F)));
+  const double right = 0.25 / 2.5625 * std::hypot(1, 1.25);
+  const Reference reference = run(made, tiny_material());
+  CHECK(reference.scattered(1, 0) == Approx((0.5 * 10 + left * 1 + right * 100) / (0.5 + left + right)).epsilon(1e-7));
 }
 
 TEST_CASE("perspective: size of a pixel and position by hand", "[separable]") {
@@ -58,48 +54,80 @@ TEST_CASE("perspective: size of a pixel and position by hand", "[separable]") {
   made.light[0] = 6;
   made.mm_per_unit = 2;
   made.depth = {2, 1};
-  made = never_flat(made);
-  // P_0 = (-1/2, 0, 4), P_1 = (1/4, 0, 2): r^2 = 4.5625 is beyond the table.
-  CHECK(run(made, tiny_material()).scattered(1, 0) == 0);
-  Material wide = tiny_material();
-  wide.taps.terms[0].falloff = linear_table(0, {0.25, 0.125, 0.0625, 0});
-  const double falloff = value_of(wide.taps.terms[0].falloff, 0, 4.5625);
-  const Reference reference = run(made, wide);
+  // P_0 = (-1/2, 0, 4), P_1 = (1/4, 0, 2).
+  const double falloff = 0.25 / (0.75 * 0.75 + 2 * 2);
+  const Reference reference = run(never_flat(made), tiny_material());
   // dP/dx is (1 + 1/8 * 2, 0, -2) at the first pixel, (1/2 - 1/8 * 2, 0, -2) at the second.
-  const double from_second = falloff * std::hypot(0.25, 2);
-  const double from_first = falloff * std::hypot(1.25, 2);
-  CHECK(reference.scattered(0, 0) == Approx(6 * 0.5 / (0.5 + from_second)));
-  CHECK(reference.scattered(1, 0) == Approx(6 * from_first / (0.5 + from_first)));
+  const double s_first = std::hypot(1.25, 2);
+  const double s_second = std::hypot(0.25, 2);
+  const double centre_first = 1 - 0.5 / s_first;
+  const double centre_second = 1 - 0.5 / s_second;
+  CHECK(reference.scattered(0, 0) == Approx(6 * centre_first / (centre_first + falloff * s_second)).epsilon(1e-14));
+  CHECK(reference.scattered(1, 0) ==
+        Approx(6 * falloff * s_first / (centre_second + falloff * s_first)).epsilon(1e-14));
+}
+
+TEST_CASE("perspective: off axis, with unequal focal lengths", "[separable]") {
+  // P_0 = 8 (1/4, -1, 1) and P_1 = 4 (1/4, -3/4, 1) are (1, -5, 4) apart.
+  MadeFrame made(1, 2, Camera::perspective(2, 4, 0, 4.5), 0);
+  made.light[0] = 6;
+  made.depth = {8, 4};
+  Options options;
+  options.sheared = false;
+  // dP/dy is (-4/4, 8/4 + 4, -4) at the first pixel, (-4/4, 4/4 + 4 * 3/4, -4) at the second.
+  const double tap = 0.25 / (1 + 25 + 16) * std::sqrt(1.0 + 36 + 16);
+  const double centre = 1 - 0.5 / std::sqrt(1.0 + 16 + 16);
+  const Reference reference = run(never_flat(made), tiny_material(), options);
+  CHECK(reference.scattered(0, 1) == Approx(6 * tap / (centre + tap)).epsilon(1e-14));
 }
 
 TEST_CASE("the mask makes the profile narrower", "[separable]") {
-  // At k = 1/2 distances and weights count double, so that 1 mm is r^2 = 4.
-  Material material = tiny_material();
-  material.taps.terms[0].falloff = linear_table(0, {0.25, 0.125, 0.0625});
+  // At k = 1/2 distances and lengths count double: the centre weighs 1 - 1/2 / 2, a tap 2 * 1/4 / 4.
   MadeFrame made = three_pixels();
   made.mask = {1, 0.5F, 1};
-  const Reference reference = run(made, material);
-  CHECK(reference.scattered(1, 0) == Approx((0.5 * 10 + 2 * 0.0625 * 101) / (0.5 + 4 * 0.0625)));
+  const Reference reference = run(made, tiny_material());
+  CHECK(reference.scattered(1, 0) == Approx((0.75 * 10 + 0.125 * 101) / (0.75 + 2 * 0.125)).epsilon(1e-14));
 }
 
-TEST_CASE("the centre is that of the pixel's own pixels per mm and width", "[separable]") {
+TEST_CASE("a weight is a cubic function of nearness", "[separable]") {
+  // Pixels of 1/2 mm with k = 1/4 have s / k = 2 and (d / k)^2 = 4, where t = 6 / (2 + 1) and t = 20 / (4 + 1).
   Material material = tiny_material();
   material.taps.radius_mm = 10;
-  material.taps.terms[0].centre = made_table([](double root) { return std::pow(root, 4); },
-                                             4);  // The table is exact, as it is linear in the fourth power.
+  TapLevel level = made_level(2, {1});
+  level.nearness = {{6, 1}, {20, 1}};
+  const CubicWeight centre{{{0.25F, 0, 0}, {0, 0.125F, 0}, {0, 0, 0.0625F}}};
+  const CubicWeight pair{{{0.25F, 0, 0}, {0.125F, 0.0625F, 0}, {-0.0625F, 0.03125F, 0.015625F}}};
+  set_levels(material.taps, {level}, alike(centre, pair));
   MadeFrame made = three_pixels();
-  made.camera = Camera::orthographic(2, 2);  // The next pixel's r^2 = 1/4 lies below the first octave, at 1/4.
+  for (std::size_t i = 0; i < 3; ++i) made.light[3 * i + 1] = made.light[3 * i + 2] = made.light[3 * i];
+  made.camera = Camera::orthographic(2, 2);
   made.mask = {1, 0.25F, 1};
-  // Half a pixel is 1/4 mm, which is 1 mm over k, for the centre. For the taps r^2 / k^2 = 4, where the table ends.
-  material.taps.terms[0].falloff = linear_table(0, {0.25, 0.125, 0.0625});
-  const double tap = 0.5 * 0.0625 / 0.25;
-  CHECK(run(made, material).scattered(1, 0) == Approx((1 * 10 + tap * 101) / (1 + 2 * tap)));
+  const Reference reference = run(made, material);
+  const double centres[] = {1 - 2 * 0.25, 1 - 4 * 0.125, 1 - 8 * 0.0625};
+  const double taps[] = {2 * (4 * 0.25 + 16 * 0.125 - 64 * 0.0625), 2 * (16 * 0.0625 + 64 * 0.03125),
+                         2 * (64 * 0.015625)};
+  for (int c = 0; c < 3; ++c) {
+    CHECK(reference.scattered(1, 0, c) ==
+          Approx((centres[c] * 10 + taps[c] * 101) / (centres[c] + 2 * taps[c])).epsilon(1e-14));
+  }
+}
+
+TEST_CASE("the centre has a least weight", "[separable]") {
+  Material material = tiny_material();
+  set_levels(material.taps, {made_level(1, {1})}, tiny_rows(-5, 0.25));
+  const double least = 0x1p-20;
+  CHECK(run(never_flat(three_pixels()), material).scattered(1, 0) ==
+        Approx((least * 10 + 0.25 * 101) / (least + 0.5)).epsilon(1e-14));
+  MadeFrame alone(1, 1, one_px_per_mm, 7);
+  const Reference reference = run(never_flat(alone), material);
+  CHECK(reference.scattered(0, 0) == 7);
+  CHECK(reference.scattered_bound(0, 0) < 1e-4);
 }
 
 TEST_CASE("the level is chosen by the widest kernel of the block", "[separable]") {
   Material material = tiny_material();
   material.taps.radius_mm = 0.5;
-  material.taps.levels = {made_level(1, {}, 1), made_level(1, {1}, 1)};
+  set_levels(material.taps, {made_level(1, {}), made_level(1, {1})}, tiny_rows(1, 0.25));
   MadeFrame made(33, 33, one_px_per_mm, 0);
   for (std::size_t i = 0; i < made.pixels(); ++i) {
     const auto x = static_cast<float>(i % 33);
@@ -110,7 +138,7 @@ TEST_CASE("the level is chosen by the widest kernel of the block", "[separable]"
   made.camera = Camera::orthographic(1.0584, 1);
   CHECK(run(made, material).scattered(5, 0) == 25);
   made.camera = Camera::orthographic(1.0587, 1);
-  CHECK(run(made, material).scattered(5, 0) > 25.4);  // Level 1 begins at 17/16 of half a pixel, less 1/256.
+  CHECK(run(made, material).scattered(5, 0) > 25.3);  // Level 1 begins at 17/16 of half a pixel, less 1/256.
 
   material.taps.radius_mm = 0.54;
   made.camera = one_px_per_mm;
@@ -129,8 +157,7 @@ TEST_CASE("the level is chosen by the widest kernel of the block", "[separable]"
 TEST_CASE("a narrow pixel has no say in the level of its block", "[separable]") {
   // Material 2 is narrow at a full mask; material 1 is just wide enough at half of it.
   std::vector materials{tiny_material(1), tiny_material(2)};
-  materials[0].taps.levels = {made_level(1, {}, 1), made_level(1, {1}, 1)};
-  materials[0].taps.terms[0].falloff = linear_table(0, {0.25, 0.125, 0.1});
+  set_levels(materials[0].taps, {made_level(1, {}), made_level(1, {1})}, tiny_rows(0.5, 0.25));
   materials[1].taps.radius_mm = 0.25;
   MadeFrame made = three_pixels();
   made.mask = {0.5F, 0.5F, 1};
@@ -147,10 +174,8 @@ TEST_CASE("a narrow pixel has no say in the level of its block", "[separable]") 
 TEST_CASE("a kernel may be narrow along one axis only", "[separable]") {
   MadeFrame made(3, 3, Camera::orthographic(0.4, 1), 0);
   made.light[3 * 4] = 1;
-  Material material = tiny_material();
-  material.taps.terms[0].falloff = linear_table(0, {0.25});
   for (const MadeFrame& either : {made, never_flat(made)}) {
-    const Reference reference = run(either, material);
+    const Reference reference = run(either, tiny_material());
     CHECK(reference.touched.values == std::vector<double>(9, 1));
     CHECK(reference.scattered(0, 1) == 0);
     CHECK(reference.scattered(1, 0) > 0.2);

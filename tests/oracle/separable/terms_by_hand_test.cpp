@@ -3,7 +3,6 @@
 #include <cstddef>
 #include <vector>
 
-#include "dermis/oracle/compare.hpp"
 #include "dermis/oracle/reference.hpp"
 #include "oracle/support/made_frame.hpp"
 #include "oracle/support/made_taps.hpp"
@@ -53,7 +52,7 @@ double difference(const std::array<double, 3>& values, std::size_t i, double tot
 
 TEST_CASE("two normalised terms by hand", "[terms]") {
   Material material = tiny_material();
-  add_term(material.taps, tiny_term(0.125, 0.75), one_mm);
+  add_term(material.taps, {}, tiny_rows(0.75, 0.125));
   share_out(material.taps, 0.25);
   for (const MadeFrame& made : flat_and_curved(nine_pixels())) {
     const Reference reference = run(made, material);
@@ -68,18 +67,10 @@ TEST_CASE("two normalised terms by hand", "[terms]") {
   }
 }
 
-TEST_CASE("a term may have less light in its centre", "[terms]") {
-  Material material = tiny_material();
-  material.taps.levels[0].centre_gain[0] = grey(0.5);
-  for (const MadeFrame& made : flat_and_curved(three_pixels())) {
-    CHECK(run(made, material).scattered(1, 0) == Approx((0.25 * 10 + 0.25 * 101) / 0.75));
-  }
-}
-
 TEST_CASE("a difference term by hand: taps that are missing count as the pixel", "[terms]") {
   for (const double sum : {0.0, 1.0, -0.5}) {
     Material material = tiny_material();
-    add_term(material.taps, tiny_difference(0.125, sum), one_mm);
+    add_term(material.taps, difference_term(sum), tiny_rows(1, 0.125));
     material.taps.terms[1].scale = grey(0.5);
     for (const MadeFrame& made : flat_and_curved(nine_pixels())) {
       const Reference reference = run(made, material);
@@ -96,34 +87,28 @@ TEST_CASE("a difference term by hand: taps that are missing count as the pixel",
   }
 }
 
+TEST_CASE("a difference term is limited by the sum of the first term's weights", "[terms]") {
+  // On a curved block the first term's weights sum to 1/2 + 2 * 3/4 = 2 in the middle, 5/4 beside it.
+  Material material = tiny_material();
+  set_levels(material.taps, {made_level(1, {1})}, tiny_rows(0.5, 0.75));
+  add_term(material.taps, difference_term(1), tiny_rows(1, 0.125));
+  const Reference reference = run(never_flat(three_pixels()), material);
+  CHECK(reference.scattered(1, 0) ==
+        Approx((0.5 * 10 + 0.75 * 101) / 2 + 10 + 0.125 / 2 * (1 + 100 - 2 * 10)).epsilon(1e-14));
+  CHECK(reference.scattered(0, 0) == Approx((0.5 * 1 + 0.75 * 10) / 1.25 + 1 + 0.125 / 1.25 * (10 - 1)).epsilon(1e-14));
+}
+
 TEST_CASE("the centre of a difference term counts nothing", "[terms]") {
   Material material = tiny_material();
-  add_term(material.taps, tiny_difference(0.125, 0), one_mm);
+  add_term(material.taps, difference_term(0), tiny_rows(1, 0.125));
   const MadeFrame made = never_flat(nine_pixels());
   const Reference before = run(made, material);
-  material.taps.terms[1].centre = material.taps.terms[0].centre;
+  material.taps.levels[0].weights[1] = linear(0.5);
   const Reference after = run(made, material);
   CHECK(after.scattered.values == before.scattered.values);
   CHECK(after.scattered_bound.values == before.scattered_bound.values);
-  material.taps.terms[0].centre = linear_table(0, {0.4});
+  material.taps.levels[0].weights[0] = linear(0.6);
   CHECK(run(made, material).scattered.values != before.scattered.values);
-}
-
-TEST_CASE("a weight may be a share of the first term's", "[terms]") {
-  // The weight is 1/8 from the term's own falloff, less a quarter of 1/4.
-  Material material = tiny_material();
-  add_term(material.taps, tiny_difference(0.125, 0), {{1, 1, 1}, {-0.25F, -0.25F, -0.25F}});
-  const Reference both = run(never_flat(nine_pixels()), material);
-  for (const std::size_t x : {0U, 1U, 2U}) {
-    const double second = difference(u, x, 0, 0.0625) * difference(v, 1, 0, 0.0625);
-    CHECK(both.scattered(static_cast<int>(x), 1) ==
-          Approx(mean(u, x, 0.5, 0.25) * mean(v, 1, 0.5, 0.25) + second).epsilon(1e-14));
-  }
-  // A term of the whole share and nothing else is the first term again, if the centre is the same.
-  Material again = tiny_material();
-  add_term(again.taps, tiny_term(0, 0.5), {{}, {1, 1, 1}});
-  share_out(again.taps, 0.25);
-  CHECK(compare(run(nine_pixels(), again).scattered, run(nine_pixels(), tiny_material()).scattered).max < 1e-12);
 }
 
 TEST_CASE("without taps a term is its sum at one point", "[terms]") {
@@ -133,7 +118,7 @@ TEST_CASE("without taps a term is its sum at one point", "[terms]") {
     made.camera = across ? Camera::orthographic(1, 0.5) : Camera::orthographic(0.5, 1);
     Material material = tiny_material();
     material.taps.radius_mm = 0.9;
-    add_term(material.taps, tiny_difference(0.125, 2), one_mm);
+    add_term(material.taps, difference_term(2), tiny_rows(1, 0.125));
     material.taps.terms[1].scale = grey(0.5);
     for (const MadeFrame& either : flat_and_curved(made)) {
       const Reference reference = run(either, material);
@@ -152,7 +137,7 @@ TEST_CASE("a pixel that is left alone gives its light to every term and keeps it
   for (const std::size_t y : {0U, 1U, 2U}) made.mask[3 * y + 1] = 0.01F;
   made.mask[4] = 1;
   Material material = tiny_material();
-  add_term(material.taps, tiny_difference(0.125, 2), one_mm);
+  add_term(material.taps, difference_term(2), tiny_rows(1, 0.125));
   const Reference reference = run(made, material);
   CHECK(reference.touched.values == std::vector<double>{1, 0, 1, 1, 1, 1, 1, 0, 1});
   CHECK(reference.scattered(1, 0) == u[1] * v[0]);
@@ -169,7 +154,7 @@ TEST_CASE("two pixels of one term beside two of two", "[terms]") {
   row.material = {1, 1, 2, 2};
   for (std::size_t i = 0; i < 4; ++i) row.light[3 * i] = static_cast<float>(1 + i * i);  // 1, 2, 5, 10
   std::vector tiny{tiny_material(1), tiny_material(2)};
-  add_term(tiny[1].taps, tiny_difference(0.125, 1), one_mm);
+  add_term(tiny[1].taps, difference_term(1), tiny_rows(1, 0.125));
   const Reference by_hand = separable(row.frame(), tiny, {});
   CHECK(by_hand.scattered(0, 0) == Approx((0.5 * 1 + 0.25 * 2) / 0.75));
   CHECK(by_hand.scattered(1, 0) == Approx((0.5 * 2 + 0.25 * 1) / 0.75));

@@ -28,28 +28,23 @@ MadeFrame rough_frame(Random& random, int width, int height) {
   return made;
 }
 
-Term gaussian_difference(double sigma_mm, double sum, double scale) {
-  Term term = gaussian_term(sigma_mm);
-  term.normalised = false;
-  term.sum = grey(sum);
-  term.scale = grey(scale);
-  return term;
-}
+Term difference_term(double sum, double scale) { return {grey(scale), false, grey(sum)}; }
 
 }  // namespace
 
-TEST_CASE("the first term's weight follows depth and width where others share it", "[terms]") {
+TEST_CASE("a second term with the weights of the first is the first again", "[terms]") {
   Random random(11);
   MadeFrame made = rough_frame(random, 33, 9);
   Material material = gaussian_material(0.5, 4);
   const Reference alone = run(made, material);
-  const auto length = static_cast<float>(0.25);
-  // Half of the first term's weight comes from the length, half from the share.
-  add_term(material.taps, gaussian_term(0.5), {{length / 2, length / 2, length / 2}, {0.5F, 0.5F, 0.5F}});
-  share_out(material.taps, 0.75);
-  CHECK(compare(run(made, material).scattered, alone.scattered).max < 1e-13);
-  material.taps.terms[1].falloff = gaussian_term(0.4).falloff;
-  CHECK(compare(run(made, material).scattered, alone.scattered).max > 1e-3);
+  Material same = material;
+  add_term(same.taps, {}, gaussian_rows(0.5));
+  share_out(same.taps, 0.75);
+  CHECK(compare(run(made, same).scattered, alone.scattered).max < 1e-13);
+  Material other = material;
+  add_term(other.taps, {}, gaussian_rows(0.4));
+  share_out(other.taps, 0.75);
+  CHECK(compare(run(made, other).scattered, alone.scattered).max > 1e-3);
 }
 
 TEST_CASE("constant light stays constant if scale times sum squared adds to 1", "[terms]") {
@@ -58,9 +53,9 @@ TEST_CASE("constant light stays constant if scale times sum squared adds to 1", 
     const double sums[] = {1, random.uniform(-2, 2), 0};
     const double scales[] = {random.uniform(0.5, 1.5), random.uniform(-1, 1), random.uniform(-1, 1)};
     Material material = gaussian_material(0.5, 4);
-    add_term(material.taps, gaussian_term(0.2), {{0.25F, 0.2F, 0.3F}, {0.1F, 0, -0.1F}});
+    add_term(material.taps, {}, gaussian_rows(0.2));
     for (std::size_t t = 0; t < 3; ++t) {
-      add_term(material.taps, gaussian_difference(0.4, sums[t], scales[t]), {{0.25F, 0.2F, 0.3F}, {-0.1F, 0, 0.5F}});
+      add_term(material.taps, difference_term(sums[t], scales[t]), gaussian_rows(0.4));
     }
     // The first term's scale makes up the sum of 1, but for its rounding to float32.
     double rest = 0.75;
@@ -91,26 +86,28 @@ TEST_CASE("constant light stays constant if scale times sum squared adds to 1", 
 TEST_CASE("terms are passes of their own", "[terms]") {
   Random random(13);
   const MadeFrame made = rough_frame(random, 37, 21);
-  const std::vector<Term> terms{gaussian_term(0.5), gaussian_term(0.3), gaussian_difference(0.6, 0.5, 1)};
+  const Term difference = difference_term(0.5, 1);
+  const RowWeights rows[] = {gaussian_rows(0.5), gaussian_rows(0.3), gaussian_rows(0.6)};
   const double scales[] = {0.5, -0.75, 1.25};
   for (const double jitter : {0.0, 0.5}) {
     Options options;
     options.jitter = jitter;
     options.seed = static_cast<std::uint32_t>(random.integer(0, 1 << 30));
     Material material = gaussian_material(0.5, 4);
-    const Taps first = material.taps;
     std::vector<Picture> alone;
-    for (std::size_t t = 0; t < 2; ++t) {
-      material.taps.terms = {terms[t]};
-      alone.push_back(run(made, material, options).scattered);
+    for (const std::size_t t : {1U, 0U}) {
+      TapLevel level = material.taps.levels[0];
+      level.weights.clear();
+      set_levels(material.taps, {level}, rows[t]);
+      alone.insert(alone.begin(), run(made, material, options).scattered);
     }
     // The weights of the first term limit those of a difference.
-    material.taps = first;
-    add_term(material.taps, terms[2], first.levels[0].weights[0]);
-    material.taps.terms[0].scale = grey(0);
-    alone.push_back(run(made, material, options).scattered);
-    material.taps = first;
-    for (const std::size_t t : {1U, 2U}) add_term(material.taps, terms[t], first.levels[0].weights[0]);
+    Material two = material;
+    add_term(two.taps, difference, rows[2]);
+    two.taps.terms[0].scale = grey(0);
+    alone.push_back(run(made, two, options).scattered);
+    add_term(material.taps, {}, rows[1]);
+    add_term(material.taps, difference, rows[2]);
     for (std::size_t t = 0; t < 3; ++t) material.taps.terms[t].scale = grey(scales[t]);
     const Reference all = run(made, material, options);
     double worst = 0;
@@ -138,13 +135,15 @@ TEST_CASE("materials of one and of several terms side by side", "[terms]") {
   // one level.
   for (float& mask : made.mask) mask = mask < 0.2F ? 0.01F : mask;
   std::vector materials{gaussian_material(0.5, 4, 1), gaussian_material(0.3, 4, 2), gaussian_material(0.4, 4, 3)};
-  add_term(materials[1].taps, gaussian_difference(0.5, 0, 0.5), {{0.25F, 0.25F, 0.25F}, {0.5F, 0.5F, 0.5F}});
+  add_term(materials[1].taps, difference_term(0, 0.5), gaussian_rows(0.5));
   for (const double sigma_mm : {0.2, 0.3}) {
-    add_term(materials[2].taps, gaussian_difference(sigma_mm, 0.5, -0.5), {{0.25F, 0.25F, 0.25F}, {}});
+    add_term(materials[2].taps, difference_term(0.5, -0.5), gaussian_rows(sigma_mm));
   }
-  const Reference together = separable(made.frame(), materials, {});
+  Options options;
+  options.sheared = false;  // A shear is shared by neighbours of any material.
+  const Reference together = separable(made.frame(), materials, options);
   for (std::size_t m = 0; m < 3; ++m) {
-    const Reference alone = run(made, materials[m]);
+    const Reference alone = run(made, materials[m], options);
     int compared = 0;
     for (std::size_t i = 0; i < made.pixels(); ++i) {
       if (made.material[i] != static_cast<float>(m + 1)) continue;
@@ -167,9 +166,7 @@ TEST_CASE("all terms of a pixel are rotated by the same angle", "[terms]") {
     const Reference one = run(made, material, options);
     // A difference with the weights and the sum of the mean is the mean, as nothing is missing.
     Material two = material;
-    Term same = material.taps.terms[0];
-    same.normalised = false;
-    add_term(two.taps, same, one_mm);
+    add_term(two.taps, difference_term(1, 1), tiny_rows(1, 0.25));
     share_out(two.taps, -1);
     const Reference both = run(made, two, options);
     for (int c = 0; c < 3; ++c) CHECK(both.scattered(10, 10, c) == Approx(one.scattered(10, 10, c)).epsilon(1e-14));

@@ -16,30 +16,23 @@
 
 namespace dermis::oracle {
 
-/// On a smooth block, this is added to the number of the level.
-constexpr int smooth = 1536;
-
 /// Returns the kernel radius where a level begins, px.
 inline double first_radius_px(int level) { return std::ldexp(0.5 * (1 + level % 16 / 16.0), level / 16); }
 
 /// Returns a kernel of `radius_mm` with a pair of taps on the neighbours, on every level. On flat blocks each of them
-/// weighs 1/8 + the number of the level / 1024, on smooth ones 3/2 more, on curved ones nothing, as they have no
-/// length. Another pair, as far away as the kernel reaches, weighs nothing at all.
+/// weighs 1/8 + the number of the level / 1024, on curved ones nothing. Another pair, as far away as the kernel
+/// reaches, weighs nothing at all.
 inline Material telling_material(double radius_mm, int id = 0) {
   Material material;
   material.id = id;
-  material.taps.radius_mm = radius_mm;
-  material.taps.relative_width = {1, 1, 1};
-  material.taps.terms.push_back(tiny_term(0.25, 0.5));
+  material.taps = made_taps(radius_mm);
+  std::vector<TapLevel> levels;
+  for (int i = 0; i < 8 * 16; ++i)
+    levels.push_back(made_level(1, {1, std::max(2, static_cast<int>(first_radius_px(i)))}));
+  set_levels(material.taps, levels, alike({}, {}));
   for (int i = 0; i < 8 * 16; ++i) {
-    // All pixels are larger than those of the levels, by so much that the stretch is clamped.
-    material.taps.levels.push_back(made_level(100, {1, std::max(2, static_cast<int>(first_radius_px(i)))}, 0));
-    TapLevel& level = material.taps.levels.back();
-    const auto on_neighbours = [](double weight) {
-      return [=](std::size_t pair, std::size_t, std::size_t) { return pair == 0 ? weight : 0; };
-    };
-    lay_flat(level, material.taps.terms, on_neighbours(0.125 + i / 1024.0));
-    lay_smooth(level, 1, on_neighbours(1.5 / static_cast<double>(Taps::most_stretch)), on_neighbours(0));
+    lay_flat(material.taps.levels[static_cast<std::size_t>(i)], material.taps.terms,
+             [=](std::size_t pair, std::size_t, std::size_t) { return pair == 0 ? 0.125 + i / 1024.0 : 0; });
   }
   return material;
 }
@@ -62,7 +55,7 @@ inline void light_squares(MadeFrame& made, bool is_vertical) {
   }
 }
 
-/// Returns the level of the flat or smooth block in which a pixel lies, as the light of squares tells it; not_flat if
+/// Returns the level of the flat block in which a pixel lies, as the light of squares tells it; not_flat if
 /// the pixel keeps its light. Both neighbours must be of the same material.
 inline int told(const Reference& reference, int x, int y, bool is_vertical) {
   const double place = is_vertical ? y : x;

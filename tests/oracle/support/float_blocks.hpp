@@ -18,10 +18,9 @@
 
 struct FloatBlock {
   bool flat = false;
-  bool smooth = false;
-  float px_per_mm = 0;  ///< if neither flat nor smooth
-  float change_mm = 0;  ///< of position per pixel, if flat or smooth
-  int shear = 0;        ///< if flat or smooth
+  float px_per_mm = 0;  ///< if not flat
+  float change_mm = 0;  ///< of position per pixel, if flat
+  int shear = 0;        ///< if flat
 };
 
 /// Returns the level of a kernel radius in eighths, rounded to the nearest on a flat block; -1 below half a pixel.
@@ -169,8 +168,7 @@ class FloatBlocks {
     const int corner[2] = {x_block, y_block};
     int begin[2] = {x_block, y_block};
     int end[2] = {std::min(x_block + 16, size[0]), std::min(y_block + 16, size[1])};
-    const Steepness own = steepness(begin, end);
-    int shear = sheared_ ? shear_of(own, corner) : 0;
+    int shear = sheared_ ? shear_of(steepness(begin, end), corner) : 0;
     const int to_side = float_side(std::abs(shear), std::min(reach_px, std::max(size[0], size[1])));
     if (to_side == 0) shear = 0;
     for (int i = 0; i < 2; ++i) {
@@ -186,10 +184,9 @@ class FloatBlocks {
       range = multiply_add(static_cast<float>(end[i] - begin[i]), near.steps[i].steepest(), range);
     }
     const bool unbroken = 2 * near.z.half() <= range && !near.is_partial;
-    block.flat = unbroken && varying2 <= 0.1F * 0.1F * change2;
-    block.smooth = unbroken && !block.flat && varying2 <= 0.4F * 0.4F * change2;
-    block.change_mm = std::sqrt(block.smooth ? squared_change(own, corner, side)[0] : change2);
-    if (block.flat || block.smooth) block.shear = shear;
+    block.flat = unbroken && varying2 <= 0.2F * 0.2F * change2;
+    block.change_mm = std::sqrt(change2);
+    if (block.flat) block.shear = shear;
   }
 
   int axis_;

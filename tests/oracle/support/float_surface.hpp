@@ -10,6 +10,19 @@
 #include "dermis/oracle/reference.hpp"
 #include "oracle/support/made_frame.hpp"
 
+/// The choices that a device is free to make.
+struct FloatStyle {
+  bool fused = false;          ///< It multiplies and adds with one rounding.
+  bool differences = false;    ///< A difference term is sum w (x - x_p), not sum w x - (sum w) x_p.
+  bool backwards = false;      ///< It begins with the outer taps and the last term.
+  bool reciprocals = false;    ///< It multiplies by reciprocals, and does not divide.
+  bool crosses = false;        ///< It has areas from the cross product of tangents, and does not multiply it out.
+  bool softens_first = false;  ///< It adds the softening of nearness to one part of a squared distance, then the other.
+
+  float multiply_add(float a, float b, float c) const { return fused ? std::fma(a, b, c) : a * b + c; }
+  float divide(float a, float b) const { return reciprocals ? a * (1 / b) : a / b; }
+};
+
 struct FloatPixel {
   int material = -1;
   bool bad = false;
@@ -17,8 +30,11 @@ struct FloatPixel {
   std::array<float, 3> position{};
   std::array<float, 2> px_per_mm{};
   std::array<float, 2> segment{};
-  int shear = 0;      ///< of the vertical pass, 1/4096 column per row
-  float covered = 1;  ///< share that the material covers
+  std::array<float, 2> ray{};  ///< change of x and y with depth
+  float slant = 0;             ///< z (1 + ray^2)
+  int own_shear = 0;           ///< by the pixel's own tangents, 1/4096 column per row
+  int shear = 0;               ///< of the vertical pass on a curved block, the same for all pixels of a run
+  float covered = 1;           ///< share that the material covers
   std::array<float, 3> k{};
   float spread = 0;
   std::array<float, 3> x{};
@@ -41,10 +57,13 @@ inline int float_side(int shear, int offset) { return std::clamp((shear * offset
 class FloatSurface {
  public:
   FloatSurface(const MadeFrame& made, std::span<const dermis::oracle::Material> materials,
-               const dermis::Options& options)
-      : pixels(made.pixels()), made_(made), materials_(materials), options_(options) {
+               const dermis::Options& options, FloatStyle style)
+      : pixels(made.pixels()), made_(made), materials_(materials), options_(options), style_(style) {
     for (std::size_t i = 0; i < pixels.size(); ++i) prepare(i);
     for (std::size_t i = 0; i < pixels.size(); ++i) measure_segments(i);
+    for (int y = 0; y < made.height; ++y) {
+      for (int x = 0; x < made.width; x += 8) share_shear(x, y);
+    }
   }
 
   std::vector<FloatPixel> pixels;
@@ -52,6 +71,7 @@ class FloatSurface {
  private:
   float albedo(std::size_t i) const { return made_.albedo.empty() ? 1 : made_.albedo[i]; }
   bool raw() const { return options_.lighting == dermis::Lighting::raw; }
+  bool perspective() const { return made_.camera.projection == dermis::Camera::Projection::perspective; }
   float mix() const { return static_cast<float>(options_.albedo_mix); }
 
   void prepare(std::size_t i) {
@@ -78,12 +98,18 @@ class FloatSurface {
     const auto sy = static_cast<float>(made_.camera.scale_y);
     const auto mm = static_cast<float>(made_.mm_per_unit);
     const float z = made_.depth.empty() ? 0 : made_.depth[i] * mm;
-    const float per_px = made_.camera.projection == dermis::Camera::Projection::perspective ? z : mm;
+    const float per_px = perspective() ? z : mm;
     const int column = static_cast<int>(i) % made_.width;
     const int row = static_cast<int>(i) / made_.width;
     pixel.px_per_mm = {sx / per_px, sy / per_px};
     pixel.position = {(static_cast<float>(column) + 0.5F - static_cast<float>(made_.camera.center_x)) * per_px / sx,
                       (static_cast<float>(row) + 0.5F - static_cast<float>(made_.camera.center_y)) * per_px / sy, z};
+    if (perspective()) {
+      pixel.ray = {1 / sx * (static_cast<float>(column) + 0.5F - static_cast<float>(made_.camera.center_x)),
+                   1 / sy * (static_cast<float>(row) + 0.5F - static_cast<float>(made_.camera.center_y))};
+    }
+    const float squared = style_.multiply_add(pixel.ray[1], pixel.ray[1], 1.0F);
+    pixel.slant = z * style_.multiply_add(pixel.ray[0], pixel.ray[0], squared);
     for (std::size_t c = 0; c < 3; ++c) {
       pixel.k[c] = made_.mask.empty() ? 1 : std::fmin(made_.mask[i], 1.0F);
       if (material.width_follows_albedo) {
@@ -102,7 +128,6 @@ class FloatSurface {
     const int place[2] = {static_cast<int>(i) % made_.width, static_cast<int>(i) / made_.width};
     const int size[2] = {made_.width, made_.height};
     const int step[2] = {1, made_.width};
-    const bool perspective = made_.camera.projection == dermis::Camera::Projection::perspective;
     std::array<std::array<float, 3>, 2> tangents{};
     for (int axis = 0; axis < 2; ++axis) {
       const auto difference = [&](int sign) -> float {
@@ -117,24 +142,56 @@ class FloatSurface {
       float slope = std::fabs(forward) < std::fabs(backward) || std::isnan(backward) ? forward : backward;
       if (std::isnan(slope) || forward * backward <= 0) slope = 0;
       for (int j = 0; j < 2; ++j) {
-        const float ray = perspective ? pixel.position[j] / pixel.position[2] : 0;
-        tangents[axis][j] = ray * slope + (j == axis ? 1 / pixel.px_per_mm[j] : 0);
+        tangents[axis][j] = style_.multiply_add(pixel.ray[j], slope, j == axis ? 1 / pixel.px_per_mm[j] : 0);
       }
       tangents[axis][2] = slope;
     }
-    auto& [along_x, along_y] = tangents;
+    const auto& [along_x, along_y] = tangents;
+    const float squared_x = squared(along_x);
+    float squared_y = squared(along_y);
     if (is_sheared(made_, options_)) {
-      const float shear = float_shear(along_x, along_y);
-      pixel.shear = static_cast<int>(std::lround(4096 * shear));
-      for (int j = 0; j < 3; ++j) along_y[j] += shear * along_x[j];
+      pixel.own_shear = static_cast<int>(std::lround(4096 * float_shear(along_x, along_y)));
+      squared_y = style_.divide(squared(normal(pixel, along_x, along_y)), squared_x);
     }
-    for (int axis = 0; axis < 2; ++axis) {
-      const auto& [x, y, z] = tangents[axis];
-      pixel.segment[axis] = pixel.covered * pixel.covered * std::sqrt(x * x + y * y + z * z);
+    pixel.segment[0] = pixel.covered * pixel.covered * std::sqrt(squared_x);
+    pixel.segment[1] = pixel.covered * pixel.covered * std::sqrt(squared_y);
+  }
+
+  float squared(const std::array<float, 3>& v) const {
+    return style_.multiply_add(v[0], v[0], style_.multiply_add(v[1], v[1], v[2] * v[2]));
+  }
+
+  std::array<float, 3> normal(const FloatPixel& pixel, const std::array<float, 3>& x,
+                              const std::array<float, 3>& y) const {
+    if (style_.crosses) {
+      return {style_.multiply_add(x[1], y[2], -(x[2] * y[1])), style_.multiply_add(x[2], y[0], -(x[0] * y[2])),
+              style_.multiply_add(x[0], y[1], -(x[1] * y[0]))};
+    }
+    const float size[2] = {1 / pixel.px_per_mm[0], 1 / pixel.px_per_mm[1]};
+    const float beside = style_.multiply_add(pixel.ray[1], y[2], size[1]);
+    return {x[2] * size[1], y[2] * size[0], style_.multiply_add(size[0], beside, size[1] * pixel.ray[0] * x[2])};
+  }
+
+  /// Gives a run of 8 pixels from `first` on the mean of their shears, which is the smaller the more they differ.
+  void share_shear(int first, int y) {
+    std::vector<int> shears;
+    const auto row = pixels.begin() + static_cast<std::ptrdiff_t>(y) * made_.width;
+    const auto end = row + std::min(first + 8, made_.width);
+    for (auto pixel = row + first; pixel != end; ++pixel) {
+      if (pixel->material >= 0) shears.push_back(pixel->own_shear);
+    }
+    if (shears.empty()) return;
+    int sum = 0;
+    for (const int shear : shears) sum += shear;
+    const auto [lowest, highest] = std::minmax_element(shears.begin(), shears.end());
+    const int mean = sum / static_cast<int>(shears.size());
+    for (auto pixel = row + first; pixel != end; ++pixel) {
+      pixel->shear = mean * (16384 - (*highest - *lowest)) / 16384;
     }
   }
 
   const MadeFrame& made_;
   std::span<const dermis::oracle::Material> materials_;
   const dermis::Options& options_;
+  FloatStyle style_;
 };

@@ -21,18 +21,21 @@ inline Material level_material(double sigma_mm, int id, int step_px) {
   Material material = gaussian_material(sigma_mm, 1, id);
   Taps& taps = material.taps;
   taps.relative_width = {1, 0.9F, 0.7F};
-  taps.levels.clear();
+  std::vector<TapLevel> levels;
   for (int i = 0; i < 6 * 16; ++i) {
     const double radius_px = std::ldexp(0.5 * (1 + (i % 16 + 0.5) / 16), i / 16);
-    const double px_per_mm = radius_px / taps.radius_mm;
-    const auto length = static_cast<float>(step_px / px_per_mm);
     std::vector<int> offsets_px;
     for (int offset = step_px; offset < radius_px; offset += step_px) offsets_px.push_back(offset);
-    TapLevel level = made_level(px_per_mm, offsets_px, 0);
-    for (TapWeight& weight : level.weights) weight.length_mm = {length, length * 0.9F, length * 1.1F};
-    taps.levels.push_back(level);
+    levels.push_back(gaussian_level(sigma_mm, radius_px / taps.radius_mm, offsets_px, step_px));
   }
-  lay_flat(taps);
+  const RowWeights rows = gaussian_rows(sigma_mm, step_px);
+  set_levels(taps, levels, [&](const TapLevel& level, std::size_t row) {
+    // A part of a pair's weight goes with lower powers of the nearness, and channels differ.
+    const auto& [a, b, c] = rows(level, row);
+    if (row == 0) return CubicWeight{a, b, c};
+    return CubicWeight{
+        {{0.25F * c[0], 0, 0.5F * c[2]}, {0, 0.4F * c[1], -0.1F * c[2]}, {0.75F * c[0], 0.5F * c[1], 0.7F * c[2]}}};
+  });
   return material;
 }
 
@@ -44,35 +47,27 @@ inline void lay_random_flat(Random& random, Taps& taps) {
       return random.uniform(taps.terms[t].normalised ? 0 : -1, 1) /
              taps_of_level;  // The weights of a mean do not cancel.
     });
-    const PairNumber any = [&](std::size_t, std::size_t, std::size_t) {
-      return random.uniform(-0.2, 0.2) / taps_of_level;
-    };
-    lay_smooth(level, taps.terms.size(), any, any);
   }
 }
 
 /// Adds up to `most` terms, means or differences, whose taps differ from level to level.
-inline void add_terms(Random& random, Taps& taps, double sigma_mm, int most) {
+inline void add_terms(Random& random, Taps& taps, int most) {
   const auto any = [&](double low, double high) {
     std::array<float, 3> values{};
     for (float& value : values) value = static_cast<float>(random.uniform(low, high));
     return values;
   };
   for (int t = random.integer(0, most); t > 0; --t) {
-    Term term = gaussian_term(sigma_mm * random.uniform(0.3, 1));
-    term.normalised = random.coin();
-    term.sum = random.coin() ? std::array<float, 3>{} : any(-1, 1);
-    add_term(taps, term, {}, random.uniform(0.5, 1));
-    const std::size_t terms = taps.terms.size();
-    const bool shares = random.coin();
-    for (TapLevel& level : taps.levels) {
-      const double length = random.uniform(0, 1) * static_cast<double>(1 / level.px_per_mm);
-      for (std::size_t i = terms - 1; i < level.weights.size(); i += terms) {
-        // The weights of a mean do not cancel.
-        level.weights[i].length_mm = any(term.normalised ? 0 : -length, length);
-        if (shares) level.weights[i].share = any(term.normalised ? 0 : -1, 1);
-      }
-    }
+    const bool normalised = random.coin();
+    const Term term{grey(1), normalised, random.coin() ? std::array<float, 3>{} : any(-1, 1)};
+    add_term(taps, term, [&](const TapLevel& level, std::size_t row) {
+      // The weights of a mean do not cancel. Its centre may be the least one, a difference has none.
+      const double most_weight =
+          row == 0 ? (normalised ? 1 : 0) : random.uniform(0, 1) / static_cast<double>(level.offsets_px.size());
+      const double least_weight = normalised ? 0 : -most_weight;
+      return CubicWeight{any(least_weight, most_weight), any(least_weight, most_weight),
+                         any(least_weight, most_weight)};
+    });
   }
   for (Term& term : taps.terms) term.scale = any(-1, 1);
   taps.terms[0].scale = any(0.5, 1.5);

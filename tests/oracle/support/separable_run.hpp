@@ -39,8 +39,7 @@ inline MadeFrame three_pixels(bool column = false) {
 inline Material pair_at_8_px() {
   Material material = tiny_material();
   material.taps.radius_mm = 8;
-  material.taps.terms[0].falloff = linear_table(0, {0.25});
-  material.taps.levels = {made_level(1, {8}, 1)};
+  set_levels(material.taps, {made_level(1, {8}, same_everywhere)}, tiny_rows(0.5, 0.25));
   return material;
 }
 
