@@ -8,6 +8,7 @@
 #include "dermis/oracle/scenes.hpp"
 #include "dermis/profile.hpp"
 #include "oracle/support/made_frame.hpp"
+#include "oracle/support/separable_run.hpp"
 #include "support/catch.hpp"
 
 namespace dermis::oracle {
@@ -24,8 +25,8 @@ Material material_of(const Profile& profile, int taps, int id = 1) {
   return material;
 }
 
-/// Returns the largest distance of a filtered step from the profile's own edge, at about 4 px per mm: at the pixels per
-/// mm of a level, where its flat weights are exact.
+/// Returns the largest distance of a filtered step from the profile's own edge, on flat and on curved blocks at about 4
+/// px per mm: at the pixels per mm of a level, where its weights are exact.
 double edge_error(const Profile& profile, int taps) {
   const Material material = material_of(profile, taps);
   const int index = Taps::level_index(static_cast<float>(4 * material.taps.radius_mm));
@@ -33,12 +34,14 @@ double edge_error(const Profile& profile, int taps) {
   const int half = 24;
   MadeFrame made(2 * half, 1, Camera::orthographic(px_per_mm, px_per_mm), 0);
   for (int x = half; x < 2 * half; ++x) MadeFrame::set_rgb(made.light, static_cast<std::size_t>(x), 1, 1, 1);
-  const Reference reference = separable(made.frame(), std::span(&material, 1), {});
   double worst = 0;
-  for (int x = half - 4; x < half + 4; ++x) {
-    for (int c = 0; c < 3; ++c) {
-      const double edge = profile.edge(c, (x + 0.5 - half) / px_per_mm);
-      worst = std::max(worst, std::abs(reference.scattered(x, 0, c) - edge));
+  for (const MadeFrame& either : {made, never_flat(made)}) {
+    const Reference reference = separable(either.frame(), std::span(&material, 1), {});
+    for (int x = half - 4; x < half + 4; ++x) {
+      for (int c = 0; c < 3; ++c) {
+        const double edge = profile.edge(c, (x + 0.5 - half) / px_per_mm);
+        worst = std::max(worst, std::abs(reference.scattered(x, 0, c) - edge));
+      }
     }
   }
   return worst;
