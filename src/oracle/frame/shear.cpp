@@ -11,7 +11,7 @@ namespace {
 
 constexpr int fraction_bits = 12;
 constexpr double one = 1 << fraction_bits;
-constexpr int full_damping = 1 << 14;  // A range of 4 columns per row would reduce a mean to 0; the largest is 2.
+constexpr int full_damping = 1 << 13;  // The largest range there is, 2 columns per row, reduces a mean to 0.
 constexpr int most_px = 32;            // No tap lies farther to the side of its pixel.
 
 }  // namespace

@@ -186,7 +186,7 @@ class FloatSurface {
     const auto [lowest, highest] = std::minmax_element(shears.begin(), shears.end());
     const int mean = sum / static_cast<int>(shears.size());
     for (auto pixel = row + first; pixel != end; ++pixel) {
-      pixel->shear = mean * (16384 - (*highest - *lowest)) / 16384;
+      pixel->shear = mean * (8192 - (*highest - *lowest)) / 8192;
     }
   }
 
