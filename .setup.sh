@@ -13,11 +13,20 @@ mkdir -p "$logs"
 export POCL_CACHE_DIR=${POCL_CACHE_DIR:-$PWD/build/pocl-cache}
 mkdir -p "$POCL_CACHE_DIR"
 
-# Where a run of apt holds its lock, the next one waits for it.
-apt_wait=(-o DPkg::Lock::Timeout=600)
+# Where another run of apt holds a lock, this one waits for so many seconds.
+apt_wait=600
 
 # say TEXT...: a line for the person who watches.
 say() { printf '%s\n' "$*"; }
+
+# update_lists COMMAND...: runs the command with apt-get update. DPkg::Lock::Timeout does not wait for the lock of the package lists.
+update_lists() {
+  local end=$((SECONDS + apt_wait))
+  until "$@" apt-get update -qq; do
+    { tail -n 4 "$logs/apt.log" | grep -q lists/lock && [ $SECONDS -lt $end ]; } || return 1
+    sleep 2
+  done
+}
 
 # install_packages NAME...: installs what is missing. On a system without dpkg it trusts that all is there.
 install_packages() {
@@ -37,8 +46,9 @@ install_packages() {
   fi
   say "installing ${missing[*]}"
   {
-    "${as_root[@]}" apt-get "${apt_wait[@]}" update -qq &&
-      "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get "${apt_wait[@]}" install -qq -y --no-install-recommends "${missing[@]}"
+    update_lists "${as_root[@]}" &&
+      "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -o DPkg::Lock::Timeout=$apt_wait install -qq -y \
+        --no-install-recommends "${missing[@]}"
   } </dev/null >"$logs/apt.log" 2>&1 || {
     tail -n 30 "$logs/apt.log" >&2
     return 1

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cctype>
 #include <cstdlib>
+#include <map>
+#include <mutex>
+#include <utility>
 
 namespace dermis {
 
@@ -86,18 +89,31 @@ cl::Device find_device(const std::string& name) {
   throw Error(ErrorCode::device, "device", "\"" + name + "\"", "one of " + names);
 }
 
+/// A part of a device with so many compute units, made once and kept until the process ends. In PoCL 3.1 neither
+/// contexts nor queues retain their part, and one of its threads looks at the part after it has said that a command has
+/// ended.
+cl::Device part_of(const cl::Device& whole, int threads) {
+  static std::mutex mutex;
+  static std::map<std::pair<cl_device_id, int>, cl_device_id> parts;
+  const std::scoped_lock lock(mutex);
+  cl_device_id& part = parts[{whole(), threads}];
+  if (part == nullptr) {
+    const cl_device_partition_property properties[] = {CL_DEVICE_PARTITION_BY_COUNTS, threads,
+                                                       CL_DEVICE_PARTITION_BY_COUNTS_LIST_END, 0};
+    std::vector<cl::Device> made;
+    cl::Device(whole).createSubDevices(properties, &made);
+    part = made.front()();
+    clRetainDevice(part);  // for good
+  }
+  return cl::Device(part, true);
+}
+
 cl::Device with_threads(const cl::Device& device, int threads) {
   const auto available = static_cast<int>(device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>());
   if (threads < 1 || threads > available) {
     throw Error(ErrorCode::usage, "threads", std::to_string(threads), "1.." + std::to_string(available));
   }
-  if (threads == available) return device;
-  const cl_device_partition_property properties[] = {CL_DEVICE_PARTITION_BY_COUNTS, threads,
-                                                     CL_DEVICE_PARTITION_BY_COUNTS_LIST_END, 0};
-  std::vector<cl::Device> parts;
-  cl::Device whole = device;
-  whole.createSubDevices(properties, &parts);
-  return parts.front();
+  return threads == available ? device : part_of(device, threads);
 }
 
 }  // namespace

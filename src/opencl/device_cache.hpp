@@ -41,8 +41,8 @@ struct DeviceCache {
 /// The cache that a device shares with its copies.
 DeviceCache& cache_of(const Device& device);
 
-/// A queue that measures times, for one run at a time. The device keeps it after the run: PoCL 3.1 lets go of a
-/// command's event after it has said that the command is done, and then looks at the queue.
+/// A queue that measures times, for one run at a time: the run's commands have ended when it gives the queue back. The
+/// device keeps the queue for the next run.
 class BorrowedQueue {
  public:
   /// The device outlives it.
