@@ -268,6 +268,7 @@ struct TapLevelParams {
 struct NearnessParams {
   float scale;
   float softening;
+  float end;
 };
 
 // The weight of the centre or a pair in one term, on a curved block: dermis::CubicWeight.

@@ -19,12 +19,14 @@ struct Term {
   std::array<float, 3> sum{1, 1, 1};  ///< sum of the weights where no tap is missing; 1 if normalised
 };
 
-/// How near a point of the surface is to a pixel, t = scale / (a + softening), where t = 1 at the distance at which the
-/// plane of the level has the tap. For a pair of taps a is (d / k)^2, mm^2, of the true distance d and the pixel's
-/// width factor k; for the centre it is s / k, mm, of the length of surface s that the pixel spans along the pass.
+/// How near a point of the surface is to a pixel, t = max(scale / (a + softening) - end, 0), where t = 1 at the
+/// distance at which the plane of the level has the tap. For a pair of taps a is (d / k)^2, mm^2, of the true distance
+/// d and the pixel's width factor k, and t is 0 from twice the radius of the kernel on; for the centre a is s / k, mm,
+/// of the length of surface s that the pixel spans along the pass, and the end is 0.
 struct Nearness {
   float scale;
-  float softening;
+  float softening;  ///< above 0
+  float end;
 };
 
 /// Coefficients (A, B, C) of three channels. A pair of taps weighs

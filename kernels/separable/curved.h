@@ -75,6 +75,10 @@ FORCED_INLINE vrgb cubic_times(global const struct CubicWeight* its, vfloat t, v
   return result;
 }
 
+FORCED_INLINE vfloat nearness_of(global const struct NearnessParams* its, vfloat softened) {
+  return higher(its->scale / softened - its->end, (vfloat)(0.0f));
+}
+
 // Adds a tap of each lane to the sums. `clean`: it lies on the material or in a gap, else only the lanes `there` count.
 FORCED_INLINE void add_tap(Sums* sums, const Target* own, global const struct NearnessParams* nearness,
                            global const struct CubicWeight* weights, const Tap* tap, vfloat offset2, vint there,
@@ -85,16 +89,17 @@ FORCED_INLINE void add_tap(Sums* sums, const Target* own, global const struct Ne
   const vfloat distance2 =
       higher(fma(offset2, square, (tap->z - own->z) * (tap->ray_depth - own->ray_depth)), (vfloat)(0.0f));
   const vrgb k = own->reciprocal;
-  vrgb t = {nearness->scale / fma(distance2, k.r * k.r, (vfloat)(nearness->softening)),
-            nearness->scale / fma(distance2, k.g * k.g, (vfloat)(nearness->softening)),
-            nearness->scale / fma(distance2, k.b * k.b, (vfloat)(nearness->softening))};
+  const vfloat softening = (vfloat)(nearness->softening);
+  vrgb t = {nearness_of(nearness, fma(distance2, k.r * k.r, softening)),
+            nearness_of(nearness, fma(distance2, k.g * k.g, softening)),
+            nearness_of(nearness, fma(distance2, k.b * k.b, softening))};
   if (!clean) t = select_or_zero_rgb(there, t);
   const vrgb length = times(k, clean ? tap->segment : select_or_zero(there, tap->segment));
 #else
   const vfloat softening = (vfloat)(nearness->softening);
   const vfloat softened =
       higher(fma(offset2, square, fma(tap->z - own->z, tap->ray_depth - own->ray_depth, softening)), softening);
-  vfloat t = nearness->scale / softened;
+  vfloat t = nearness_of(nearness, softened);
   if (!clean) t = select_or_zero(there, t);
   const vfloat length = clean ? tap->segment : select_or_zero(there, tap->segment);
 #endif

@@ -44,7 +44,7 @@ void append_level(const TapLevel& level, const Taps& taps, double jitter, Materi
                            static_cast<int>(tables.flat_weights.size()),
                            last_px});
   tables.offsets_px.insert(tables.offsets_px.end(), level.offsets_px.begin(), level.offsets_px.end());
-  for (const auto& [scale, softening] : level.nearness) tables.nearness.push_back({scale, softening});
+  for (const auto& [scale, softening, end] : level.nearness) tables.nearness.push_back({scale, softening, end});
   const std::size_t terms = taps.terms.size();
   for (std::size_t row = 0; row <= level.offsets_px.size(); ++row) {
     for (std::size_t t = 0; t < terms_per_material; ++t) {

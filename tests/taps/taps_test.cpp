@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -27,10 +28,11 @@ double curved_weight(const Taps& taps, const TapLevel& level, std::size_t row, s
                      double distance) {
   if (row == 0 && !taps.terms[term].normalised) return 0;
   const double px_per_mm = level.px_per_mm;
-  const auto& [scale, softening] = level.nearness[row];
+  const auto& [scale, softening, end] = level.nearness[row];
   const auto& [a, b, k] = level.weights[row * taps.terms.size() + term];
   const double r_mm = row == 0 ? 0 : distance * level.offsets_px[row - 1] / px_per_mm;
-  const double t = scale / ((row == 0 ? length / px_per_mm : r_mm * r_mm) + static_cast<double>(softening));
+  const double at = row == 0 ? length / px_per_mm : r_mm * r_mm;
+  const double t = std::max(scale / (at + static_cast<double>(softening)) - static_cast<double>(end), 0.0);
   const double cubic = t * (a[c] + t * (b[c] + t * static_cast<double>(k[c])));
   if (row == 0) return std::max(1 - cubic, static_cast<double>(dermis::least_centre_weight));
   return length / px_per_mm * cubic;
@@ -194,14 +196,13 @@ TEST_CASE("the curves of a term follow the profile", "[taps]") {
 }
 
 TEST_CASE("on a tilted plane the weights by distance are those of the profile", "[taps]") {
-  // Measured: at most 0.011 of all weight.
-  constexpr double bound = 0.02;
+  // How far weights may be off in all, for 1 / the cosine of the tilt. Measured: 0.0002, 0.011, 0.031, 0.075.
+  constexpr std::array bounds = {std::pair{1.0, 1e-3}, std::pair{1.2, 0.02}, std::pair{1.6, 0.04}, std::pair{2.5, 0.1}};
   for (const char* name : {"skin", "marble", "wax"}) {
     const Profile profile = dermis::preset(name).profile;
     for (const int rank : {1, 2}) {
       // Placed without a search, which would start from other levels.
-      const TapsDesign design{
-          .model = Model::optimised, .rank = rank, .count = 17, .placement = Placement::importance};
+      const TapsDesign design{.model = Model::optimised, .rank = rank, .count = 17, .placement = Placement::importance};
       const Taps taps = make_taps(profile, design);
       const dermis::DesignedTaps designed(profile, design);
       std::vector<dermis::TermCurves> curves;
@@ -214,7 +215,7 @@ TEST_CASE("on a tilted plane the weights by distance are those of the profile", 
         const dermis::SizedTaps sized = budget.at(Taps::level_index(radius_px));
         REQUIRE(sized.placed.offsets_px.size() == level.offsets_px.size());
         const dermis::SurfaceWeights exact(sized, curves, level.px_per_mm);
-        for (const double tilt : {1.0, 1.2, 1.6, 2.5}) {  // 1 / cosine
+        for (const auto& [tilt, bound] : bounds) {
           for (std::size_t t = 0; t < taps.terms.size(); ++t) {
             for (int c = 0; c < 3; ++c) {
               double off = 0;

@@ -6,10 +6,11 @@ namespace dermis::oracle {
 
 namespace {
 
-/// Returns t = scale / (a + softening). A device may add the softening to one part of a before the other, which is one
-/// more rounding of a sum that is no larger.
+/// Returns t = max(scale / (a + softening) - end, 0). A device may add the softening to one part of a before the other,
+/// which is one more rounding of a sum that is no larger.
 Bounded nearness(const Nearness& its, Bounded a) {
-  return flushed(exact(its.scale) / rounded(a + exact(its.softening)));
+  const Bounded from_end = flushed(exact(its.scale) / rounded(a + exact(its.softening))) - exact(its.end);
+  return clamped(from_end, 0, std::numeric_limits<double>::infinity());
 }
 
 /// Returns t (A + t (B + t C)), of which a coefficient, a product and a sum may each be flushed.

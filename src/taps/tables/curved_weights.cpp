@@ -1,133 +1,186 @@
 #include "taps/tables/curved_weights.hpp"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <span>
+#include <limits>
 
 namespace dermis {
 
 namespace {
 
-/// Where weights are fitted: at squared distances, or lengths, of so many times those on the plane.
-struct Nodes {
-  std::vector<double> x;
-  Eigen::ArrayXd importance;
+/// Where weights are fitted: at squared distances, or lengths, of x times those on the plane.
+constexpr std::size_t node_count = 24;
+using Values = std::array<double, node_count>;
 
-  /// Weights matter most near the plane, as surfaces are seldom steep.
-  explicit Nodes(std::span<const double> more = {}) : x(more.begin(), more.end()) {
-    constexpr int count = 20;
-    constexpr double first = 0.8;
-    constexpr double last = 50;
-    constexpr double fading = 0.75;
-    for (int i = 0; i < count; ++i) x.push_back(first * std::pow(last / first, i / (count - 1.0)));
-    importance.resize(static_cast<Eigen::Index>(x.size()));
-    for (std::size_t i = 0; i < x.size(); ++i) {
-      importance[static_cast<Eigen::Index>(i)] = std::pow(std::max(x[i], 1.0), -fading);
-    }
-  }
+struct Nodes {
+  Values x;
+  Values importance;
 };
+
+/// No distance is much shorter than on the plane, but the length of a pixel that its material covers in part is.
+Nodes make_nodes(bool of_lengths) {
+  constexpr std::array shorter = {0.0, 0.1, 0.25, 0.5};
+  constexpr double first = 0.8;
+  constexpr double last = 50;
+  constexpr double fading = 0.75;  // surfaces are seldom steep
+  Nodes nodes;
+  for (std::size_t i = 0; i < node_count; ++i) {
+    const double step = static_cast<double>(i - shorter.size()) / (node_count - shorter.size() - 1);
+    nodes.x[i] = i < shorter.size() ? shorter[i] : first * std::pow(last / first, step);
+    nodes.importance[i] = i < shorter.size() && !of_lengths ? 0 : std::pow(std::max(nodes.x[i], 1.0), -fading);
+  }
+  return nodes;
+}
+
+double product(const Values& a, const Values& b, const Values& importance) {
+  double sum = 0;
+  for (std::size_t i = 0; i < node_count; ++i) sum += importance[i] * a[i] * b[i];
+  return sum;
+}
 
 using Coefficients = std::array<double, 3>;
 
-/// Fits t (A + t (B + t C)) with t = (1 + softening) / (x + softening), exactly at x = 1.
+/// Fits t (A + t (B + t C)), exactly at x = 1, where t = max(scale / (x + softening) - end, 0) is 1 there and 0 from
+/// x_end on.
 class CubicFit {
  public:
-  CubicFit(const Nodes& nodes, double softening) : softening_(softening), importance_(nodes.importance) {
-    const auto count = static_cast<Eigen::Index>(nodes.x.size());
-    t_.resize(count);
-    for (Eigen::Index i = 0; i < count; ++i) t_[i] = (1 + softening) / (nodes.x[i] + softening);
-    // By A + B + C = y(1), what is left to fit are the multiples B and C of these.
-    Eigen::MatrixXd basis(count, 2);
-    basis << t_ * t_ - t_, t_ * t_ * t_ - t_;
-    cubic_ = solver(basis);
-    steep_ = solver((t_ * t_ * t_ - t_ * t_).matrix());
+  CubicFit(const Nodes& nodes, double softening, double x_end) : importance_(nodes.importance), softening_(softening) {
+    const double at_end = 1 / (x_end + softening);
+    scale_ = 1 / (1 / (1 + softening) - at_end);
+    end_ = at_end * scale_;
+    for (std::size_t i = 0; i < node_count; ++i) {
+      const double t = std::max(scale_ / (nodes.x[i] + softening) - end_, 0.0);
+      linear_[i] = t;
+      square_[i] = t * t;
+      // By A + B + C = y(1), what is left to fit are the multiples B and C of these.
+      square_less_[i] = t * t - t;
+      cube_less_[i] = t * t * t - t;
+      steep_[i] = t * t * t - t * t;
+    }
+    bb_ = product(square_less_, square_less_, importance_);
+    bc_ = product(square_less_, cube_less_, importance_);
+    cc_ = product(cube_less_, cube_less_, importance_);
+    ss_ = product(steep_, steep_, importance_);
   }
 
-  double softening() const { return softening_; }
-
-  /// `y` has the values at the nodes, y_1 the one at x = 1.
-  Coefficients fit(const Eigen::ArrayXd& y, double y_1, bool not_negative) const {
-    const Eigen::Vector2d rest = cubic_ * (y - y_1 * t_).matrix();
-    const Coefficients cubic{y_1 - rest[0] - rest[1], rest[0], rest[1]};
-    if (!not_negative || is_not_negative(cubic)) return cubic;
-    // Without A it falls faster with distance than the surface grows.
-    const double c = (steep_ * (y - y_1 * t_ * t_).matrix()).value();
-    const Coefficients steep{0, y_1 - c, c};
-    return is_not_negative(steep) ? steep : Coefficients{0, 0, y_1};
+  /// For x in units of `unit`.
+  Nearness nearness(double unit) const {
+    return {static_cast<float>(scale_ * unit), static_cast<float>(softening_ * unit), static_cast<float>(end_)};
   }
 
-  double squared_error(const Eigen::ArrayXd& y, const Coefficients& its) const {
-    return (importance_ * (t_ * (its[0] + t_ * (its[1] + t_ * its[2])) - y).square()).sum();
+  /// The best fit to the values y at the nodes; y_1 is the one at x = 1.
+  Coefficients cubic(const Values& y, double y_1) const {
+    Values rest;
+    for (std::size_t i = 0; i < node_count; ++i) rest[i] = y[i] - y_1 * linear_[i];
+    const double b = product(square_less_, rest, importance_);
+    const double c = product(cube_less_, rest, importance_);
+    const double determinant = bb_ * cc_ - bc_ * bc_;
+    const double b_best = (cc_ * b - bc_ * c) / determinant;
+    const double c_best = (bb_ * c - bc_ * b) / determinant;
+    return {y_1 - b_best - c_best, b_best, c_best};
   }
 
- private:
-  Eigen::MatrixXd solver(const Eigen::MatrixXd& basis) const {
-    const Eigen::MatrixXd weighted = importance_.matrix().asDiagonal() * basis;
-    return (basis.transpose() * weighted).ldlt().solve(weighted.transpose());
+  /// The best fit without A, which falls faster far away.
+  Coefficients steep(const Values& y, double y_1) const {
+    Values rest;
+    for (std::size_t i = 0; i < node_count; ++i) rest[i] = y[i] - y_1 * square_[i];
+    const double c_best = product(steep_, rest, importance_) / ss_;
+    return {0, y_1 - c_best, c_best};
   }
 
-  /// From far away to no distance at all.
+  double squared_error(const Values& y, const Coefficients& its) const {
+    Values off;
+    for (std::size_t i = 0; i < node_count; ++i) {
+      off[i] = linear_[i] * (its[0] + linear_[i] * (its[1] + linear_[i] * its[2])) - y[i];
+    }
+    return product(off, off, importance_);
+  }
+
+  /// Whether A + t (B + t C) is nowhere negative, from far away to no distance at all.
   bool is_not_negative(const Coefficients& its) const {
     const auto [a, b, c] = its;
-    const double last = (1 + softening_) / softening_;
+    const double last = scale_ / softening_ - end_;
     const double vertex = c > 0 ? std::clamp(-b / (2 * c), 0.0, last) : 0;
     const auto at = [&](double t) { return a + t * (b + t * c); };
     return a >= 0 && at(last) >= 0 && at(vertex) >= 0;
   }
 
-  double softening_;
-  Eigen::ArrayXd importance_;
-  Eigen::ArrayXd t_;
-  Eigen::MatrixXd cubic_;
-  Eigen::MatrixXd steep_;
+ private:
+  const Values& importance_;
+  double softening_, scale_, end_;
+  Values linear_, square_, square_less_, cube_less_, steep_;
+  double bb_, bc_, cc_, ss_;
 };
-
-std::vector<CubicFit> make_fits(const Nodes& nodes) {
-  constexpr int count = 14;
-  constexpr double least = 0.05;
-  constexpr double most = 15;
-  std::vector<CubicFit> fits;
-  for (int i = 0; i < count; ++i) {
-    fits.emplace_back(nodes, (1 + least) * std::pow((1 + most) / (1 + least), i / (count - 1.0)) - 1);
-  }
-  return fits;
-}
 
 /// A function that is fitted: of one term and channel of a tap.
 struct Function {
-  Eigen::ArrayXd y;
+  Values y;
   double y_1;
-  bool not_negative;
 };
 
-/// Appends the fit with the best softening, which all functions share. `unit` is what x = 1 stands for, mm or mm^2.
-void append_best(const std::vector<CubicFit>& fits, const std::vector<Function>& functions, double unit, double factor,
-                 CurvedWeights& result) {
-  double least_error = INFINITY;
-  const CubicFit* best = nullptr;
-  std::vector<Coefficients> best_coefficients;
-  std::vector<Coefficients> coefficients(functions.size());
-  for (const CubicFit& fit : fits) {
-    double error = 0;
-    for (std::size_t i = 0; i < functions.size(); ++i) {
-      const Function& its = functions[i];
-      coefficients[i] = fit.fit(its.y, its.y_1, its.not_negative);
-      error += fit.squared_error(its.y, coefficients[i]);
-    }
-    if (best != nullptr && !(error < least_error)) continue;
-    least_error = error;
-    best = &fit;
-    best_coefficients = coefficients;
+/// A weight of a mean, which is nowhere negative.
+Coefficients fit_mean(const CubicFit& fit, const Function& its) {
+  for (const Coefficients& candidate : {fit.cubic(its.y, its.y_1), fit.steep(its.y, its.y_1)}) {
+    if (fit.is_not_negative(candidate)) return candidate;
   }
-  result.nearness.push_back(
-      {static_cast<float>((1 + best->softening()) * unit), static_cast<float>(best->softening() * unit)});
+  return {0, 0, its.y_1};
+}
+
+/// A weight of a difference. The mean divides by the weights of the first term where there is much surface far away,
+/// and the difference is to grow no more than these: it has at most so many times their weight at any distance.
+Coefficients fit_difference(const CubicFit& fit, const Function& its, const Coefficients& of_first, double first_1) {
+  constexpr double most = 16;
+  for (const Coefficients& candidate : {fit.cubic(its.y, its.y_1), fit.steep(its.y, its.y_1)}) {
+    Coefficients below, above;
+    for (std::size_t i = 0; i < 3; ++i) {
+      below[i] = most * of_first[i] - candidate[i];
+      above[i] = most * of_first[i] + candidate[i];
+    }
+    if (fit.is_not_negative(below) && fit.is_not_negative(above)) return candidate;
+  }
+  Coefficients like_first{};
+  if (first_1 > 0) {
+    for (std::size_t i = 0; i < 3; ++i) like_first[i] = its.y_1 / first_1 * of_first[i];
+  }
+  return like_first;
+}
+
+/// Appends the fit with the best softening, which all functions share. `unit` is what x = 1 stands for, mm or mm^2.
+void append_best(const Nodes& nodes, const std::vector<Function>& functions, const std::vector<TermCurves>& terms,
+                 bool is_centre, double x_end, double unit, double factor, CurvedWeights& result) {
+  constexpr int count = 14;
+  constexpr double least = 0.05;
+  constexpr double most = 15;
+  double least_error = std::numeric_limits<double>::infinity();
+  std::vector<Coefficients> best;
+  std::vector<Coefficients> coefficients(functions.size());
+  for (int i = 0; i < count; ++i) {
+    const double softening = (1 + least) * std::pow((1 + most) / (1 + least), i / (count - 1.0)) - 1;
+    const CubicFit fit(nodes, softening, x_end);
+    double error = 0;
+    for (std::size_t f = 0; f < functions.size(); ++f) {
+      const Function& its = functions[f];
+      if (is_centre) {
+        coefficients[f] = fit.cubic(its.y, its.y_1);
+      } else if (terms[f / 3].normalised) {
+        coefficients[f] = fit_mean(fit, its);
+      } else {
+        coefficients[f] = fit_difference(fit, its, coefficients[f % 3], functions[f % 3].y_1);
+      }
+      error += fit.squared_error(its.y, coefficients[f]);
+    }
+    if (i > 0 && !(error < least_error)) continue;
+    least_error = error;
+    best = coefficients;
+    if (i > 0) result.nearness.pop_back();
+    result.nearness.push_back(fit.nearness(unit));
+  }
   for (std::size_t first = 0; first < functions.size(); first += 3) {
     CubicWeight weight;
     for (std::size_t c = 0; c < 3; ++c) {
-      for (int power = 0; power < 3; ++power) {
-        weight[power][c] = static_cast<float>(factor * best_coefficients[first + c][power]);
+      for (std::size_t power = 0; power < 3; ++power) {
+        weight[power][c] = static_cast<float>(factor * best[first + c][power]);
       }
     }
     result.weights.push_back(weight);
@@ -136,13 +189,10 @@ void append_best(const std::vector<CubicFit>& fits, const std::vector<Function>&
 
 }  // namespace
 
-CurvedWeights fit_curved_weights(const SurfaceWeights& weights) {
-  // A pixel that its material covers in part counts as less surface.
-  static constexpr std::array shorter = {0.0, 0.1, 0.25, 0.5};
-  static const Nodes lengths(shorter);
-  static const Nodes distances;
-  static const std::vector<CubicFit> centre_fits = make_fits(lengths);
-  static const std::vector<CubicFit> pair_fits = make_fits(distances);
+CurvedWeights fit_curved_weights(const SurfaceWeights& weights, double radius_mm) {
+  constexpr double least_x_end = 2;
+  static const Nodes lengths = make_nodes(true);
+  static const Nodes distances = make_nodes(false);
   CurvedWeights result;
   std::vector<Function> functions(3 * weights.terms().size());
   for (std::size_t row = 0; row < weights.rows(); ++row) {
@@ -156,19 +206,20 @@ CurvedWeights fit_curved_weights(const SurfaceWeights& weights) {
           return normalised ? 1 - weights.on_surface(0, t, c, x, 1) : 0;
         };
         Function& its = functions[3 * t + static_cast<std::size_t>(c)];
-        its.not_negative = normalised && !is_centre;
         its.y_1 = value(1);
-        its.y.resize(static_cast<Eigen::Index>(nodes.x.size()));
-        for (std::size_t i = 0; i < nodes.x.size(); ++i) its.y[static_cast<Eigen::Index>(i)] = value(nodes.x[i]);
+        std::transform(nodes.x.begin(), nodes.x.end(), its.y.begin(), value);
       }
     }
     const double px_per_mm = weights.px_per_mm();
     if (is_centre) {
-      append_best(centre_fits, functions, 1 / px_per_mm, 1, result);
+      append_best(nodes, functions, weights.terms(), true, std::numeric_limits<double>::infinity(), 1 / px_per_mm, 1,
+                  result);
     } else {
       const double distance_mm = weights.offsets_px()[row - 1] / px_per_mm;
+      const double end = 2 * radius_mm / distance_mm;
       // A pixel of the level spans 1 / px_per_mm of surface.
-      append_best(pair_fits, functions, distance_mm * distance_mm, px_per_mm, result);
+      append_best(nodes, functions, weights.terms(), false, std::max(end * end, least_x_end), distance_mm * distance_mm,
+                  px_per_mm, result);
     }
   }
   return result;

@@ -16,7 +16,7 @@ struct CurvedWeights {
 
 /// Fits cubics to the weights as functions of the squared distance of a pair, and of the length of surface of the
 /// centre. They are exact on the plane of the level, and near by least squares where the square is .8 to 50 times as
-/// large. A pair of a normalised term weighs nowhere less than 0.
-CurvedWeights fit_curved_weights(const SurfaceWeights& weights);
+/// large. A pair of a normalised term weighs nowhere less than 0, and no pair anything beyond twice the radius.
+CurvedWeights fit_curved_weights(const SurfaceWeights& weights, double radius_mm);
 
 }  // namespace dermis

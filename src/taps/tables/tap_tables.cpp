@@ -33,12 +33,13 @@ Term make_term(const ModelTerm& model) {
 }
 
 /// `step`: the difference to the px_per_mm of the next level, as a share of this one's.
-TapLevel make_level(const SizedTaps& taps, const std::vector<TermCurves>& terms, double px_per_mm, double step) {
+TapLevel make_level(const SizedTaps& taps, const std::vector<TermCurves>& terms, double radius_mm, double px_per_mm,
+                    double step) {
   const SurfaceWeights weights(taps, terms, px_per_mm);
   TapLevel level{};
   level.px_per_mm = static_cast<float>(px_per_mm);
   for (const double offset_px : taps.placed.offsets_px) level.offsets_px.push_back(static_cast<int>(offset_px));
-  CurvedWeights curved = fit_curved_weights(weights);
+  CurvedWeights curved = fit_curved_weights(weights, radius_mm);
   level.nearness = std::move(curved.nearness);
   level.weights = std::move(curved.weights);
   // Parts of the level are equal steps of the kernel radius, and it was made for the middle.
@@ -103,7 +104,8 @@ Taps make_taps(const Profile& profile, const TapsDesign& design) {
       continue;
     }
     const double width_px = std::ldexp(Taps::min_radius_px, i / levels_per_octave) / levels_per_octave;
-    taps.levels.push_back(make_level(budget.at(i), curves, radius_px / taps.radius_mm, width_px / radius_px));
+    taps.levels.push_back(
+        make_level(budget.at(i), curves, taps.radius_mm, radius_px / taps.radius_mm, width_px / radius_px));
     for (int c = 0; c < 3; ++c) {
       if (radius_px * static_cast<double>(taps.relative_width[c]) < Taps::min_radius_px) {
         leave_out(taps.levels.back(), taps.terms, c);

@@ -90,11 +90,11 @@ TEST_CASE("the mask makes the profile narrower", "[separable]") {
 }
 
 TEST_CASE("a weight is a cubic function of nearness", "[separable]") {
-  // Pixels of 1/2 mm with k = 1/4 have s / k = 2 and (d / k)^2 = 4, where t = 6 / (2 + 1) and t = 20 / (4 + 1).
+  // Pixels of 1/2 mm with k = 1/4 have s / k = 2 and (d / k)^2 = 4, where t = 6 / (2 + 1) and t = 25 / (4 + 1) - 1.
   Material material = tiny_material();
   material.taps.radius_mm = 10;
   TapLevel level = made_level(2, {1});
-  level.nearness = {{6, 1}, {20, 1}};
+  level.nearness = {{6, 1, 0}, {25, 1, 1}};
   const CubicWeight centre{{{0.25F, 0, 0}, {0, 0.125F, 0}, {0, 0, 0.0625F}}};
   const CubicWeight pair{{{0.25F, 0, 0}, {0.125F, 0.0625F, 0}, {-0.0625F, 0.03125F, 0.015625F}}};
   set_levels(material.taps, {level}, alike(centre, pair));
@@ -109,6 +109,16 @@ TEST_CASE("a weight is a cubic function of nearness", "[separable]") {
   for (int c = 0; c < 3; ++c) {
     CHECK(reference.scattered(1, 0, c) ==
           Approx((centres[c] * 10 + taps[c] * 101) / (centres[c] + 2 * taps[c])).epsilon(1e-14));
+  }
+}
+
+TEST_CASE("a tap at the end and beyond weighs nothing", "[separable]") {
+  for (const float end : {1.0F, 1.5F}) {
+    Material material = tiny_material();
+    TapLevel level = made_level(1, {1});
+    level.nearness[1] = {2, 1, end};  // t = 2 / (1 + 1) - end
+    set_levels(material.taps, {level}, tiny_rows(0.5, 0.25));
+    CHECK(run(never_flat(three_pixels()), material).scattered(1, 0) == 10);
   }
 }
 

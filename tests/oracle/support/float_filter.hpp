@@ -199,7 +199,8 @@ class FloatFilter {
               std::size_t c) const {
     const FloatPixel& pixel = pixels_[p];
     const dermis::Nearness& its = level.nearness[pair + 1];
-    const float nearness = style_.divide(its.scale, softened_distance(p, q, pixel.k[c], its.softening));
+    const float nearness =
+        std::fmax(style_.divide(its.scale, softened_distance(p, q, pixel.k[c], its.softening)) - its.end, 0.0F);
     const float rest = over_nearness(level.weights[(pair + 1) * taps_of(pixel).terms.size() + t], nearness, c);
     const float length = style_.divide(pixels_[q].segment[axis], pixel.k[c]);
     return style_.backwards ? length * (nearness * rest) : length * nearness * rest;

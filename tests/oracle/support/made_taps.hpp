@@ -29,9 +29,11 @@ inline dermis::CubicWeight linear(double a) { return {grey(a), grey(0), grey(0)}
 /// Returns C t^3.
 inline dermis::CubicWeight cubed(double c) { return {grey(0), grey(0), grey(c)}; }
 
-/// Returns t = scale / (a + softening).
+/// Returns t = max(scale / (a + softening) - end, 0).
 inline double nearness_of(const dermis::Nearness& nearness, double a) {
-  return static_cast<double>(nearness.scale) / (a + static_cast<double>(nearness.softening));
+  return std::max(static_cast<double>(nearness.scale) / (a + static_cast<double>(nearness.softening)) -
+                      static_cast<double>(nearness.end),
+                  0.0);
 }
 
 /// Returns t (A + t (B + t C)).
@@ -53,11 +55,11 @@ inline RowWeights alike(const dermis::CubicWeight& centre, const dermis::CubicWe
 inline RowWeights tiny_rows(double centre, double pair) { return alike(linear(1 - centre), linear(pair)); }
 
 /// Of a level whose weights do not change with the distance: t = 1, but for less than a rounding of double.
-inline constexpr dermis::Nearness same_everywhere{0x1p60F, 0x1p60F};
+inline constexpr dermis::Nearness same_everywhere{0x1p60F, 0x1p60F, 0};
 
 /// Returns a level without terms. Flat weights are still to be laid.
 inline dermis::TapLevel made_level(double px_per_mm, const std::vector<int>& offsets_px,
-                                   dermis::Nearness nearness = {1, 0}) {
+                                   dermis::Nearness nearness = {1, 0, 0}) {
   return {static_cast<float>(px_per_mm), offsets_px, {1 + offsets_px.size(), nearness}, {}, {}};
 }
 
@@ -161,7 +163,7 @@ inline dermis::TapLevel gaussian_level(double sigma_mm, double px_per_mm, const 
   const double variance = sigma_mm * sigma_mm;
   const double size_mm = 1 / px_per_mm;
   const auto set = [&](std::size_t row, double a, double softening) {
-    level.nearness[row] = {static_cast<float>(a + softening), static_cast<float>(softening)};
+    level.nearness[row] = {static_cast<float>(a + softening), static_cast<float>(softening), 0};
   };
   set(0, size_mm, std::max(1 / (step_px * gaussian_line(0, sigma_mm)) - 2 * size_mm, size_mm));
   for (std::size_t row = 1; row <= offsets_px.size(); ++row) {

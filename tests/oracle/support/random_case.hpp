@@ -29,6 +29,12 @@ inline Material level_material(double sigma_mm, int id, int step_px) {
     levels.push_back(gaussian_level(sigma_mm, radius_px / taps.radius_mm, offsets_px, step_px));
   }
   const RowWeights rows = gaussian_rows(sigma_mm, step_px);
+  for (TapLevel& level : levels) {
+    // Some taps have an end within reach.
+    for (std::size_t row = 1; row < level.nearness.size(); ++row) {
+      level.nearness[row].end = 0.05F * static_cast<float>(row % 3);
+    }
+  }
   set_levels(taps, levels, [&](const TapLevel& level, std::size_t row) {
     // A part of a pair's weight goes with lower powers of the nearness, and channels differ.
     const auto& [a, b, c] = rows(level, row);
