@@ -107,6 +107,26 @@ FORCED_INLINE vfloat convert_vfloat(vint value) {
 #endif
 }
 
+#if V == 1
+static inline int lowest_lane(vint v) { return v; }
+static inline int highest_lane(vint v) { return v; }
+#else
+static inline int lowest_lane(vint v) {
+#if V == 16
+  const int8 eight = min(v.lo, v.hi);
+  const int4 four = min(eight.lo, eight.hi);
+#elif V == 8
+  const int4 four = min(v.lo, v.hi);
+#else
+  const int4 four = v;
+#endif
+  const int2 two = min(four.lo, four.hi);
+  return min(two.x, two.y);
+}
+
+static inline int highest_lane(vint v) { return -lowest_lane(-v); }
+#endif
+
 static inline vint int_lane_numbers(void) {
 #if V == 1
   return 0;
