@@ -29,8 +29,8 @@ const std::set<std::string> all_flags = {"HAS_ALBEDO", "HAS_DEPTH",   "HAS_MASK"
 
 /// Other names that an #if asks for.
 const std::set<std::string> not_flags = {"V",         "TERMS",           "TABLE_SHIFT",
-                                         "FLATNESS",  "SMOOTHNESS",      "MOST_STRETCH",
-                                         "MOST_SKEW", "DERMIS_PARAMS_H", "INTERLEAVES_FLOATS"};
+                                         "FLATNESS",  "LEAST_CENTRE_WEIGHT", "SHEAR_RUN",
+                                         "SHEAR_RUNS", "DERMIS_PARAMS_H", "INTERLEAVES_FLOATS"};
 
 /// Kernel files that may stand in one program, their vector widths, and the flags that they only know one value of.
 /// Most of the time goes into the compiler's own headers: some files are together here that plans build apart.
@@ -64,7 +64,7 @@ std::vector<std::string> variants_of(const Group& group, const std::string& sour
   // Without optimisation, which takes three times as long as all that warns, but the code of optimised kernels.
   std::string common =
       "-cl-std=CL1.2 -cl-opt-disable -D__OPTIMIZE__=1 -DTABLE_SHIFT=20 -DFLATNESS=1e-2f"
-      " -DSMOOTHNESS=1e-1f -DMOST_STRETCH=2e0f -DMOST_SKEW=1e0f -DSPACING=1e0f -DREACH=3e0f"
+      " -DLEAST_CENTRE_WEIGHT=1e-6f -DSPACING=1e0f -DREACH=3e0f"
       " -DNARROW=1e0f -DMOST_TEXELS=9e0f";
   for (const auto& [flag, value] : group.fixed) common += build_constant(flag.c_str(), value);
   // In a pair of rows a flag is a bit of its number and the other one. The numbers of two flags differ in some bit, and

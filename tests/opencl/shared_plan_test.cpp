@@ -111,8 +111,7 @@ TEST_CASE("a program is built once for its files and options", "[plan][sharing]"
   const Device device = Device::open();
   const std::string options =
       "-cl-std=CL1.2 -DMATERIALS=1 -DHAS_DEPTH=0 -DHAS_MATERIAL=0 -DHAS_MASK=0 -DHAS_ALBEDO=0 "
-      "-DPIXEL_WIDTH=0 -DJITTER=0 -DSHEARED=0 -DV=16 -DFLATNESS=0.1f -DSMOOTHNESS=0.4f -DMOST_STRETCH=0.75f "
-      "-DMOST_SKEW=0.5f";
+      "-DPIXEL_WIDTH=0 -DJITTER=0 -DSHEARED=0 -DV=16 -DFLATNESS=0.1f";
   const auto built = [&](const std::string& more) {
     return dermis::build_program(device, {"classify/classify.cl"}, options + more)();
   };
