@@ -50,7 +50,7 @@ typedef long long Bytes;
 #define TILE_NARROW 1
 #define TILE_UNLIT 2
 #define TILE_UNIFORM 3
-#define TILE_FLAT 4    // all blocks are flat: no depth terms
+#define TILE_FLAT 4  // all blocks are flat: no depth terms
 #define TILE_CURVED 5
 #define TILE_REUSED 6  // nothing within reach has changed since the frame before
 

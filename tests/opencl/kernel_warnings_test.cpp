@@ -28,9 +28,9 @@ const std::set<std::string> all_flags = {"HAS_ALBEDO", "HAS_DEPTH",   "HAS_MASK"
                                          "SHEARED",    "LIT",         "TANGENT_DISC",  "INTERLEAVED"};
 
 /// Other names that an #if asks for.
-const std::set<std::string> not_flags = {"V",         "TERMS",           "TABLE_SHIFT",
-                                         "FLATNESS",  "LEAST_CENTRE_WEIGHT", "SHEAR_RUN",
-                                         "SHEAR_RUNS", "DERMIS_PARAMS_H", "INTERLEAVES_FLOATS"};
+const std::set<std::string> not_flags = {
+    "V",         "TERMS",      "TABLE_SHIFT",     "FLATNESS",          "LEAST_CENTRE_WEIGHT",
+    "SHEAR_RUN", "SHEAR_RUNS", "DERMIS_PARAMS_H", "INTERLEAVES_FLOATS"};
 
 /// Kernel files that may stand in one program, their vector widths, and the flags that they only know one value of.
 /// Most of the time goes into the compiler's own headers: some files are together here that plans build apart.
