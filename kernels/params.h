@@ -262,6 +262,7 @@ struct TapLevelParams {
   int first_weight;
   int first_flat_weight;  // of the first part
   int last_offset_px;
+  int last_rotated_px;
 };
 
 // As dermis::Nearness.

@@ -1,5 +1,4 @@
 // Curved blocks: weights by the true distance of surface points, as cubics of nearness. See Taps in tap_tables.hpp.
-#include "base/rotation.h"
 #include "frame/shear.h"
 #include "frame/surface.h"
 #include "separable/pass.h"
@@ -173,51 +172,7 @@ FORCED_INLINE void add_shifted(Sums* sums, const struct FrameParams* f, const Pa
 }
 
 #if JITTER
-// Adds the pixels (dx, dy) away, different for each lane.
-FORCED_INLINE void add_rotated(Sums* sums, const struct FrameParams* f, const Pass* s, const Target* own,
-                               global const struct NearnessParams* nearness, global const struct CubicWeight* weights,
-                               vint material, int x, int y, vint dx, vint dy) {
-  const Window* w = s->from;
-  const vint to_x = x + int_lane_numbers() + dx;
-  const vint to_y = y + dy;
-  Tap tap;
-  vint m;
-#define READ_LANE(lane)                                                                                        \
-  {                                                                                                            \
-    const int inside = LANE(to_x, lane) >= max(w->x_begin, 0) && LANE(to_x, lane) < min(w->x_end, f->width) && \
-                       LANE(to_y, lane) >= w->y_begin && LANE(to_y, lane) < w->y_end;                          \
-    const size_t at = pixel_at(w, inside ? LANE(to_x, lane) : x, inside ? LANE(to_y, lane) : y);               \
-    LANE(tap.z, lane) = w->depth[at];                                                                          \
-    LANE(tap.ray_depth, lane) = w->ray_depth[at];                                                              \
-    LANE(tap.segment, lane) = w->segment[at];                                                                  \
-    LANE(m, lane) = inside ? w->material[at] : 0;                                                              \
-    for (int t = 0; t < TERMS; ++t) {                                                                          \
-      global const float* its_light = w->light + t * s->next_light + at;                                       \
-      LANE(tap.light[t].r, lane) = its_light[0];                                                               \
-      LANE(tap.light[t].g, lane) = its_light[w->plane];                                                        \
-      LANE(tap.light[t].b, lane) = its_light[2 * w->plane];                                                    \
-    }                                                                                                          \
-  }
-  EACH_LANE(READ_LANE)
-#undef READ_LANE
-  const vfloat fx = convert_vfloat(dx);
-  const vfloat fy = convert_vfloat(dy);
-  add_tap(sums, own, nearness, weights, &tap, fma(fx, fx, f->aspect2 * fy * fy),
-          AS_MASK((m & MATERIAL_MASK) == material), 0);
-}
-
-// The axis of the rotated taps of each lane.
-FORCED_INLINE void rotated_axis(global const struct RotationParams* rotations, vint index, int axis, vint* dx,
-                                vint* dy) {
-#define READ_LANE(lane)                                           \
-  {                                                               \
-    const struct RotationParams r = rotations[LANE(index, lane)]; \
-    LANE(*dx, lane) = axis == 0 ? r.cosine : r.sine_y;            \
-    LANE(*dy, lane) = axis == 0 ? r.sine_x : r.cosine;            \
-  }
-  EACH_LANE(READ_LANE)
-#undef READ_LANE
-}
+#include "separable/rotated.h"
 #endif
 
 // Scatters the lanes of one material on a curved surface. `clean`: all taps fall on it or into gaps, where there is no
@@ -264,8 +219,10 @@ FORCED_INLINE void scatter_curved(vrgb* result, const struct FrameParams* f, con
     const vint dy = (offsets[i] * axis_y + 2048) >> 12;
     ++nearness;
     weights += TERMS;
-    add_rotated(&sums, f, s, &own, nearness, weights, material, x, y, dx, dy);
-    add_rotated(&sums, f, s, &own, nearness, weights, material, x, y, -dx, -dy);
+#pragma nounroll
+    for (int sign = 1; sign >= -1; sign -= 2) {
+      add_rotated(&sums, f, s, &own, nearness, weights, material, x, y, sign * dx, sign * dy);
+    }
   }
 #endif
   int shear[SHEAR_RUNS];

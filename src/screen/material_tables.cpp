@@ -42,7 +42,8 @@ void append_level(const TapLevel& level, const Taps& taps, double jitter, Materi
                            static_cast<int>(tables.nearness.size()),
                            static_cast<int>(tables.weights.size()),
                            static_cast<int>(tables.flat_weights.size()),
-                           last_px});
+                           last_px,
+                           rotated > 0 ? level.offsets_px[static_cast<std::size_t>(rotated) - 1] : 0});
   tables.offsets_px.insert(tables.offsets_px.end(), level.offsets_px.begin(), level.offsets_px.end());
   for (const auto& [scale, softening, end] : level.nearness) tables.nearness.push_back({scale, softening, end});
   const std::size_t terms = taps.terms.size();
