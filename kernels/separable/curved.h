@@ -31,8 +31,9 @@ typedef struct {
   vrgb light[TERMS];
 } Tap;
 
-FORCED_INLINE vfloat load_tap(global const float* plane, const Place* place) {
-#if V > SHEAR_RUN
+FORCED_INLINE vfloat load_tap(const Pass* s, global const float* plane, const Place* place) {
+#if V > SHEAR_RUN && SHEARED
+  if (s->axis == 0) return load_floats(plane + place->at[0]);
   const vfloat value = {*(global const run_floats*)(plane + place->at[0]),
                         *(global const run_floats*)(plane + place->at[1])};
   return value;
@@ -53,8 +54,8 @@ FORCED_INLINE vint load_tap_bytes(global const uchar* plane, const Place* place)
 
 FORCED_INLINE vrgb load_tap_light(const Pass* s, int t, const Place* place) {
   global const float* plane = s->from->light + t * s->next_light;
-  const vrgb value = {load_tap(plane, place), load_tap(plane + s->from->plane, place),
-                      load_tap(plane + 2 * s->from->plane, place)};
+  const vrgb value = {load_tap(s, plane, place), load_tap(s, plane + s->from->plane, place),
+                      load_tap(s, plane + 2 * s->from->plane, place)};
   return value;
 }
 
@@ -163,7 +164,7 @@ FORCED_INLINE void add_shifted(Sums* sums, const struct FrameParams* f, const Pa
 #endif
   }
   if (!clean) there &= AS_MASK((load_tap_bytes(w->material, &place) & MATERIAL_MASK) == material);
-  Tap tap = {load_tap(w->depth, &place), load_tap(w->ray_depth, &place), load_tap(w->segment, &place)};
+  Tap tap = {load_tap(s, w->depth, &place), load_tap(s, w->ray_depth, &place), load_tap(s, w->segment, &place)};
 #pragma unroll
   for (int t = 0; t < TERMS; ++t) {
     tap.light[t] = t == 0 || s->axis == 1 ? load_tap_light(s, t, &place) : tap.light[0];
