@@ -503,7 +503,7 @@ static inline struct BlockPass pass_over(const struct FrameParams* f, global con
     join_block(&within_block, own, axis);
     pass.shear = shear_of_block(view, &within_block);
   }
-  const int side_px = side_of(abs(pass.shear), reach_px);
+  const int side_px = side_of(abs(pass.shear), reach_px, MOST_FLAT_SIDE);
   if (side_px == 0) pass.shear = 0;
   const BlockBox box = blocks_around(f, block_x, block_y, axis, reach_px, side_px);
   DepthRange within_reach = unseen;
@@ -523,8 +523,8 @@ static inline struct BlockPass pass_over(const struct FrameParams* f, global con
   const int taps_px = farthest_tap_of(own, materials, levels, pass.px_per_mm, pass.block_class);
   int across_px = 0;
 #if SHEARED
-  if (axis == 1 && pass.block_class == CLASS_CURVED) across_px = min(taps_px, MOST_SIDE);
-  if (pass.shear != 0) across_px = side_of(abs(pass.shear), taps_px);
+  if (axis == 1 && pass.block_class == CLASS_CURVED) across_px = min(taps_px, MOST_CURVED_SIDE);
+  if (pass.shear != 0) across_px = side_of(abs(pass.shear), taps_px, MOST_FLAT_SIDE);
 #endif
   pass.material = material_within(f, blocks, block_x, block_y, axis, taps_px, across_px, pass.block_class);
   return pass;

@@ -8,4 +8,4 @@
 #endif
 
 // The columns between a pixel and its tap that lies `offset` rows below it. The shear is in columns per row times 4096.
-FORCED_INLINE int side_of(int shear, int offset) { return clamp((shear * offset + 2048) >> 12, -MOST_SIDE, MOST_SIDE); }
+FORCED_INLINE int side_of(int shear, int offset, int most) { return clamp((shear * offset + 2048) >> 12, -most, most); }

@@ -134,7 +134,7 @@ FORCED_INLINE void add_shifted(Sums* sums, const struct FrameParams* f, const Pa
     int side[SHEAR_RUNS];
     float offset2[SHEAR_RUNS];
     for (int i = 0; i < SHEAR_RUNS; ++i) {
-      side[i] = side_of(shear[i], offset);
+      side[i] = side_of(shear[i], offset, MOST_CURVED_SIDE);
       offset2[i] = (float)(side[i] * side[i]) + along2;
       const int to_x = x + i * SHEAR_RUN + side[i];
       // There is no memory beyond the window.

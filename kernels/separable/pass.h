@@ -66,7 +66,7 @@ FORCED_INLINE Pass pass_from(const Window* w, int axis, int shear) {
 }
 
 FORCED_INLINE int tap_x(const Pass* s, int x, int offset) {
-  return s->axis == 0 ? x + offset : x + side_of(s->shear, offset);
+  return s->axis == 0 ? x + offset : x + side_of(s->shear, offset, MOST_FLAT_SIDE);
 }
 
 // The index of the pixel an offset away.

@@ -24,8 +24,8 @@ static inline void place_sides(const Windows* w, const Tables* tables, struct Ch
   global const struct TapLevelParams* level = tables->levels + choice.level;
   global const int* offsets = tables->offsets + level->first_offset;
   for (int i = 0; i < level->pairs; ++i) {
-    w->side_at[2 * i] = side_of(choice.shear, -offsets[i]);
-    w->side_at[2 * i + 1] = side_of(choice.shear, offsets[i]);
+    w->side_at[2 * i] = side_of(choice.shear, -offsets[i], MOST_FLAT_SIDE);
+    w->side_at[2 * i + 1] = side_of(choice.shear, offsets[i], MOST_FLAT_SIDE);
   }
 #endif
 }

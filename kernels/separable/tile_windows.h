@@ -67,7 +67,8 @@ SHARED int farthest_side(const TileRun* run, Box box, int reach) {
   for (int block_y = box.y_begin / BLOCK; block_y * BLOCK < box.y_end; ++block_y) {
     for (int block_x = box.x_begin / BLOCK; block_x * BLOCK < box.x_end; ++block_x) {
       const struct BlockPass pass = block_pass(run->f, run->tables, block_x, block_y, 1);
-      const int side = pass.block_class == CLASS_CURVED ? min(reach, MOST_SIDE) : side_of(abs(pass.shear), reach);
+      const int side = pass.block_class == CLASS_CURVED ? min(reach, MOST_CURVED_SIDE)
+                                                        : side_of(abs(pass.shear), reach, MOST_FLAT_SIDE);
       farthest = max(farthest, side);
     }
   }

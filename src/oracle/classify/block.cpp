@@ -218,7 +218,7 @@ std::vector<Blocks::Extent> Blocks::extents(Axis axis, const Place& place) const
   const auto add_sides = [&](int along_px) {
     along_px = std::min(along_px, longest_px);
     // A shear that moves no tap counts as none.
-    for (const int side : sides_px(of_block.magnitude(), along_px)) {
+    for (const int side : sides_px(of_block.magnitude(), along_px, most_flat_side_px)) {
       add({blocks_over(along_px), blocks_over(side), side == 0 ? BoundedShear{} : of_block});
     }
   };

@@ -12,7 +12,6 @@ namespace {
 constexpr int fraction_bits = 12;
 constexpr double one = 1 << fraction_bits;
 constexpr int full_damping = 1 << 13;  // The largest range there is, 2 columns per row, reduces a mean to 0.
-constexpr int most_px = 32;            // No tap lies farther to the side of its pixel.
 
 }  // namespace
 
@@ -85,14 +84,15 @@ BoundedShear damped_mean(std::span<const BoundedShear> shears) {
           damped(high, high > 0 ? narrowest : widest)};
 }
 
-int side_px(int shear, int offset_px) {
+int side_px(int shear, int offset_px, int most_px) {
   const int side = (shear * offset_px + (1 << (fraction_bits - 1))) >> fraction_bits;
   return std::clamp(side, -most_px, most_px);
 }
 
-std::vector<int> sides_px(const BoundedShear& shear, int offset_px) {
-  const int nominal = side_px(shear.nominal, offset_px);
-  const auto [low, high] = std::minmax({side_px(shear.lowest, offset_px), side_px(shear.highest, offset_px)});
+std::vector<int> sides_px(const BoundedShear& shear, int offset_px, int most_px) {
+  const int nominal = side_px(shear.nominal, offset_px, most_px);
+  const auto [low, high] =
+      std::minmax({side_px(shear.lowest, offset_px, most_px), side_px(shear.highest, offset_px, most_px)});
   std::vector<int> sides{nominal};
   for (int side = low; side <= high; ++side) {
     if (side != nominal) sides.push_back(side);

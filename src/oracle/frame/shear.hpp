@@ -40,13 +40,17 @@ BoundedShear whole_shear(Bounded shear);
 /// So many neighbours in a row share one shear on curved blocks.
 inline constexpr int shear_run_px = 8;
 
-/// Returns mean (1 - range / 2^14) of the shears of a run, where both divisions truncate as in C; 0 of none.
+/// Returns mean (1 - range / 2^13) of the shears of a run, where both divisions truncate as in C; 0 of none.
 BoundedShear damped_mean(std::span<const BoundedShear> shears);
 
+/// No tap of the vertical pass lies farther to the side of its pixel, on a flat block and on a curved one.
+inline constexpr int most_flat_side_px = 32;
+inline constexpr int most_curved_side_px = 6;
+
 /// Returns how many columns a tap `offset_px` rows below its pixel lies to the right; `shear` is in 1/4096.
-int side_px(int shear, int offset_px);
+int side_px(int shear, int offset_px, int most_px);
 
 /// Returns side_px() for every shear that a device may have, the oracle's own first.
-std::vector<int> sides_px(const BoundedShear& shear, int offset_px);
+std::vector<int> sides_px(const BoundedShear& shear, int offset_px, int most_px);
 
 }  // namespace dermis::oracle

@@ -218,7 +218,8 @@ void Pass::add_center(int x, int y, const TapWeights& weights) {
 std::vector<PixelOffset> Pass::sheared(int x, int y, int offset_px, const Choice& choice) const {
   const bool has_own = choice.block_class == BlockClass::curved;
   std::vector<PixelOffset> offsets;
-  for (const int side : sides_px(has_own ? surface_.shear(x, y) : choice.shear, offset_px)) {
+  for (const int side : sides_px(has_own ? surface_.shear(x, y) : choice.shear, offset_px,
+                                 has_own ? most_curved_side_px : most_flat_side_px)) {
     offsets.push_back({side, offset_px});
   }
   return offsets;

@@ -93,7 +93,7 @@ class SeparableTiles final : public SeparableMethod {
     const bool turns_taps = settings_.options.jitter > 0;
     const bool has_pixel_width = settings_.has_pixel_width();
     const auto reach = static_cast<std::size_t>(farthest_px_);
-    const int side_px = settings_.is_sheared() ? round_up(MOST_SIDE, BLOCK) : 0;
+    const int side_px = settings_.is_sheared() ? round_up(MOST_FLAT_SIDE, BLOCK) : 0;
     const auto columns = [&](std::size_t own, std::size_t around) {
       return std::min<std::size_t>(frame.stride(), own + 2 * (around + PADDING));
     };

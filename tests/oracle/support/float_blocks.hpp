@@ -169,7 +169,7 @@ class FloatBlocks {
     int begin[2] = {x_block, y_block};
     int end[2] = {std::min(x_block + 16, size[0]), std::min(y_block + 16, size[1])};
     int shear = sheared_ ? shear_of(steepness(begin, end), corner) : 0;
-    const int to_side = float_side(std::abs(shear), std::min(reach_px, std::max(size[0], size[1])));
+    const int to_side = float_side(std::abs(shear), std::min(reach_px, std::max(size[0], size[1])), 32);
     if (to_side == 0) shear = 0;
     for (int i = 0; i < 2; ++i) {
       const int reach = i == axis_ ? reach_px : to_side;

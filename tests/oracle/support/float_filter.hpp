@@ -136,7 +136,9 @@ class FloatFilter {
         for (const int sign : {-1, 1}) {
           int tx = x + sign * offset[0];
           const int ty = y + sign * offset[1];
-          if (axis == 1 && !turns) tx += float_side(block.flat ? block.shear : pixel.shear, sign * straight);
+          if (axis == 1 && !turns)
+            tx +=
+                block.flat ? float_side(block.shear, sign * straight, 32) : float_side(pixel.shear, sign * straight, 6);
           if (tx < 0 || ty < 0 || tx >= made_.width || ty >= made_.height) continue;
           const std::size_t q = static_cast<std::size_t>(ty) * made_.width + tx;
           if (pixels_[q].material != pixel.material || pixels_[q].bad) continue;

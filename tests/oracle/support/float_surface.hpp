@@ -52,7 +52,9 @@ inline float float_shear(const std::array<float, 3>& x, const std::array<float, 
   return std::clamp(-mixed / (x[0] * x[0] + x[1] * x[1] + x[2] * x[2]), -1.0F, 1.0F);
 }
 
-inline int float_side(int shear, int offset) { return std::clamp((shear * offset + 2048) >> 12, -32, 32); }
+inline int float_side(int shear, int offset, int most) {
+  return std::clamp((shear * offset + 2048) >> 12, -most, most);
+}
 
 class FloatSurface {
  public:
