@@ -104,7 +104,8 @@ double Scene::median_pixel_mm(std::size_t material) const {
   for (std::size_t pixel = 0; pixel < pixels(); ++pixel) {
     if (material_of(pixel) == material) depths.push_back(depth[pixel]);
   }
-  if (depths.empty() || camera.projection == Camera::Projection::orthographic) return 1 / px_per_mm();
+  if (depths.empty()) return skin_width_mm;  // nobody will see it, and kernels of about a pixel need the least memory
+  if (camera.projection == Camera::Projection::orthographic) return 1 / px_per_mm();
   const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
   std::nth_element(depths.begin(), middle, depths.end());
   return static_cast<double>(*middle) / px_per_mm();

@@ -107,12 +107,14 @@ class Vectorised final : public Opponent {
     filter_(strip, with_depth_);
   }
 
-  /// Fills all planes. Each row has room at both ends, where depth is that of the
-  /// background and light is black. Outputs begin as the light, which pixels without a material keep.
+  /// Fills all planes. Each row has room at both ends, where depth is that of the background and light is black.
+  /// Outputs begin as the light, which pixels without a material keep.
   void place_planes() {
     const int width = scene_.spec.width;
     int reach = 0;
-    for (const Layer& layer : layers_) reach = std::max(reach, layer.offsets_px.back());
+    for (const Layer& layer : layers_) {
+      for (const int offset : layer.offsets_px) reach = std::max(reach, offset);
+    }
     margin_ = (reach + 15) / 16 * 16;
     pitch_ = margin_ + strips() * strip_width_px + margin_;
     const std::size_t plane = static_cast<std::size_t>(pitch_) * scene_.spec.height;
