@@ -1,4 +1,5 @@
-# Runs `dermis-bench` on two small cases and looks at what it wrote.
+# Runs `dermis-bench` on small cases, on a small picture and against other builds, and looks at what it wrote. The program
+# `dermis`, which makes the picture, is in the same folder.
 #   cmake -DBENCH=dermis-bench -DFOLDER=where -P bench_test.cmake
 cmake_minimum_required(VERSION 3.20)
 
@@ -26,6 +27,21 @@ function(expect_between low high)
   if(value LESS low OR value GREATER high)
     message(SEND_ERROR "${ARGN}: got ${value}, want ${low}..${high}")
   endif()
+endfunction()
+
+# expect_run(ARGUMENTS...): runs, and leaves what it printed in `output`.
+function(expect_run)
+  execute_process(COMMAND ${BENCH} ${ARGN} RESULT_VARIABLE code OUTPUT_VARIABLE output ERROR_VARIABLE error)
+  if(NOT code EQUAL 0)
+    message(FATAL_ERROR "${ARGN}: exit code ${code}: ${error}")
+  endif()
+  set(output "${output}" PARENT_SCOPE)
+endfunction()
+
+# make_build(NAME TEXT): a build folder whose dermis-bench is a shell script of that text.
+function(make_build name text)
+  file(WRITE ${FOLDER}/${name}/bin/dermis-bench "#!/bin/sh\n${text}")
+  file(CHMOD ${FOLDER}/${name}/bin/dermis-bench PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE)
 endfunction()
 
 file(REMOVE_RECURSE ${FOLDER})
@@ -57,13 +73,9 @@ endif()
 expect_failure(2 --filter picture.exr --filter "no such case")
 
 set(cases dermis/optimised/r2/t17/flat/320x180/w8/c100 naive/importance/r1/t17/flat/320x180/w8/c100)
-execute_process(
-  COMMAND ${BENCH} --all --filter "^(dermis/optimised/r2|naive/importance/r1)/t17/flat/320x180/w8/c100$" --min-ms 1
-          --rounds 2 --json ${FOLDER}/bench.json --csv ${FOLDER}/bench.csv
-  RESULT_VARIABLE code OUTPUT_VARIABLE output ERROR_VARIABLE error)
-if(NOT code EQUAL 0)
-  message(FATAL_ERROR "exit code ${code}: ${error}")
-endif()
+set(small_cases --all --filter "^(dermis/optimised/r2|naive/importance/r1)/t17/flat/320x180/w8/c100$" --min-ms 1
+                --rounds 2)
+expect_run(${small_cases} --json ${FOLDER}/bench.json --csv ${FOLDER}/bench.csv)
 file(READ ${FOLDER}/bench.json json)
 foreach(key IN ITEMS version device platform driver)
   get(text STRING ${key})
@@ -150,3 +162,85 @@ if(gnuplot)
   expect_failure(6 --plot --filter naive --plot ${FOLDER}/missing/folder)
   expect_failure(6 --plot --filter naive --plot ${FOLDER}/bench.csv)
 endif()
+
+# On a picture of three materials every opponent has a time and an error from the exact integral, beside dermis.
+get_filename_component(bin ${BENCH} DIRECTORY)
+execute_process(COMMAND ${bin}/dermis scene head --size 160x90 -o ${FOLDER}/head.exr RESULT_VARIABLE code
+                ERROR_VARIABLE error OUTPUT_QUIET)
+if(NOT code EQUAL 0)
+  message(FATAL_ERROR "dermis scene: exit code ${code}: ${error}")
+endif()
+set(picture ${FOLDER}/head.exr --mm-per-unit 1 --material 1=marble --material 2=skin --material 3=wax --min-ms 1 --rounds 2
+            --filter "^(optimised, rank 1|naive.*|rule.*|C.*), 17 taps$")
+set(opponents "naive OpenCL, 17 taps" "rule of 2012, OpenCL, 17 taps" "C++ vectors, depth, 17 taps")
+expect_run(${picture} --json ${FOLDER}/picture.json)
+file(READ ${FOLDER}/picture.json json)
+get(rows ARRAY rows)
+string(JSON count LENGTH "${rows}")
+if(NOT count EQUAL 5)
+  message(FATAL_ERROR "${count} rows of the picture, want 5")
+endif()
+expect_between(0 0 rows 0 rel_l2)
+expect_between(1e-4 0.04 rows 1 rel_l2)
+# The rule of 2012 hardly scatters marble. The others would be off by more than 5 % if light crossed materials.
+foreach(i RANGE 2 4)
+  get(name STRING rows ${i} name)
+  if(NOT name IN_LIST opponents)
+    message(SEND_ERROR "row ${i} of the picture is ${name}")
+  endif()
+  get(limits STRING rows ${i} limits)
+  if(name MATCHES "^rule")
+    expect_between(1e-3 0.25 rows ${i} rel_l2)
+  else()
+    expect_between(1e-3 0.05 rows ${i} rel_l2)
+  endif()
+  expect_between(2 1000 rows ${i} runs)
+  foreach(key IN ITEMS ms copy_ratio loads)
+    expect_between(1e-6 1e7 rows ${i} ${key})
+  endforeach()
+endforeach()
+
+# Against a build whose runs all take 123456 ms it is that many times faster; cases that the other lacks have no ratio.
+make_build(slow "echo 'dermis-bench answers'\nwhile read name; do
+  case $name in dermis*) echo 123456;; *) echo unknown;; esac\n  echo $name >>${FOLDER}/asked\ndone\n")
+expect_run(${small_cases} --against ${FOLDER}/slow --json ${FOLDER}/against.json)
+file(READ ${FOLDER}/against.json json)
+get(against STRING against)
+get(none NULL rows 0 rel_l2)
+expect_between(123456 123456 rows 0 other_ms)
+get(ms NUMBER rows 0 ms)
+get(ratio NUMBER rows 0 other_ratio)
+get(none NULL rows 1 other_ms)
+get(none NULL rows 1 other_ratio)
+get(runs NUMBER rows 0 runs)
+if(NOT output MATCHES "${FOLDER}/slow" OR NOT output MATCHES "123456\\.00 +0\\.000 +0\\.000\\.\\.0\\.000 +${runs}\n")
+  message(SEND_ERROR "the table against another build: ${output}")
+endif()
+# Both builds run as often: the rounds that count, and one before.
+file(STRINGS ${FOLDER}/asked asked REGEX "^dermis")
+list(LENGTH asked count)
+math(EXPR wanted "${runs} + 1")
+if(NOT count EQUAL wanted)
+  message(SEND_ERROR "the other build was asked ${count} times, want ${wanted}")
+endif()
+
+# Against itself, on scenes and on the picture.
+get_filename_component(build ${bin} DIRECTORY)
+foreach(what IN ITEMS small_cases picture)
+  expect_run(${${what}} --against ${build} --json ${FOLDER}/itself.json)
+  file(READ ${FOLDER}/itself.json json)
+  foreach(i RANGE 1)
+    foreach(key IN ITEMS ms other_ms other_ratio)
+      expect_between(1e-6 1e6 rows ${i} ${key})
+    endforeach()
+  endforeach()
+endforeach()
+
+make_build(older "echo 'The following argument was not expected: --answer' >&2\nexit 2\n")
+make_build(broken "echo 'dermis-bench answers'\nread name\necho 'error: no device'\n")
+expect_failure(2 --against ${small_cases} --against ${FOLDER}/older)
+expect_failure(3 --against ${small_cases} --against ${FOLDER}/missing)
+expect_failure(7 --against ${small_cases} --against ${FOLDER}/broken)
+expect_failure(2 --against --filter start-up --against ${FOLDER}/slow)
+expect_failure(2 --against --stress --against ${FOLDER}/slow)
+expect_failure(2 --plot --against ${FOLDER}/slow --plot ${FOLDER}/plots)

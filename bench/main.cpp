@@ -8,6 +8,7 @@
 #include "dermis/error.hpp"
 #include "files/output_file.hpp"
 #include "measure/measurement.hpp"
+#include "measure/other_build.hpp"
 #include "measure/registry.hpp"
 #include "measure/start_up.hpp"
 #include "paper/paper.hpp"
@@ -39,7 +40,9 @@ struct Arguments {
   std::string plot;
   std::string paper;
   bool stress = false;
+  std::string against;
   bool start_up_child = false;
+  bool answers = false;
 };
 
 std::vector<bench::NamedMaterial> materials_of(const Arguments& arguments) {
@@ -67,15 +70,52 @@ bench::Setup setup_of(const Arguments& arguments) {
   return setup;
 }
 
+/// What the other build has to know to have the same cases.
+std::vector<std::string> arguments_of_other(const Arguments& arguments) {
+  std::vector<std::string> others = {"--device", arguments.device, "--threads", std::to_string(arguments.threads)};
+  if (arguments.picture.empty()) return others;
+  others.insert(others.end(), {arguments.picture, "--mm-per-unit", fmt::format("{}", arguments.mm_per_unit)});
+  for (const std::string& material : arguments.materials) others.insert(others.end(), {"--material", material});
+  return others;
+}
+
+/// The cases on a picture are of its size.
+std::vector<bench::Case> on(const std::optional<bench::Scene>& picture, std::vector<bench::Case> cases) {
+  if (!picture) return cases;
+  for (bench::Case& what : cases) what.scene = picture->spec;
+  return cases;
+}
+
+void answer(const Arguments& arguments) {
+  const bench::Setup setup = setup_of(arguments);
+  std::vector<bench::Case> cases = setup.picture ? bench::picture_cases() : bench::all_cases();
+  if (!setup.picture) {
+    for (bench::Case& what : bench::default_cases()) cases.push_back(std::move(what));
+  }
+  bench::answer_requests(on(setup.picture, std::move(cases)), setup);
+}
+
+/// Times against another build are of cases that run again and again in one process, and have no errors.
+std::vector<bench::Case> with_rounds(std::vector<bench::Case> cases) {
+  std::erase_if(cases, [](const bench::Case& what) { return what.family == bench::Family::start_up; });
+  if (cases.empty()) throw Error(ErrorCode::usage, "--against", "start-up cases only", "cases that run more than once");
+  return cases;
+}
+
 void measure(const Arguments& arguments) {
   const bool is_picture = !arguments.picture.empty();
+  const bool is_against = !arguments.against.empty();
   if (!is_picture && arguments.threads > 0) {
     throw Error(ErrorCode::usage, "--threads", std::to_string(arguments.threads), "a picture; cases name their own");
+  }
+  if (is_against && !arguments.plot.empty()) {
+    throw Error(ErrorCode::usage, "--plot", "--against, which measures no errors", "one of both");
   }
   std::vector<bench::Case> cases = bench::matching(is_picture      ? bench::picture_cases()
                                                    : arguments.all ? bench::all_cases()
                                                                    : bench::default_cases(),
                                                    arguments.filter);
+  if (is_against) cases = with_rounds(std::move(cases));
   if (arguments.list) {
     for (const bench::Case& what : cases) fmt::print("{}\n", what.name());
     return;
@@ -86,18 +126,19 @@ void measure(const Arguments& arguments) {
   if (!arguments.json.empty()) program::check_writable("--json", arguments.json);
   if (!arguments.csv.empty()) program::check_writable("--csv", arguments.csv);
   if (!arguments.plot.empty()) bench::prepare_plots(arguments.plot);
-  const bench::Setup setup = setup_of(arguments);
-  if (is_picture) {
-    const std::vector<bench::Case> references = bench::picture_references();
-    cases.insert(cases.begin(), references.begin(), references.end());
-    for (bench::Case& what : cases) what.scene = setup.picture->spec;
-  }
+  std::optional<bench::OtherBuild> other;
+  if (is_against) other.emplace(arguments.against, arguments_of_other(arguments));
+  bench::Setup setup = setup_of(arguments);
+  if (is_against) setup.other = &*other;
+  if (is_picture && !is_against) cases.insert(cases.begin(), bench::picture_reference());
+  cases = on(setup.picture, std::move(cases));
   bench::Measurement measurement;
   {
     program::ProgressBar progress("dermis-bench");
     measurement = bench::measure_cases(cases, setup,
                                        [&](double share, const std::string& what) { progress.update(share, what); });
   }
+  measurement.against = arguments.against;
   fmt::print("{}", bench::table_of(measurement));
   if (!arguments.json.empty()) program::write_text("--json", arguments.json, bench::json_of(measurement));
   if (!arguments.csv.empty()) program::write_text("--csv", arguments.csv, bench::csv_of(measurement));
@@ -108,6 +149,10 @@ void run(const Arguments& arguments) {
   if (arguments.start_up_child) return bench::run_start_up_child(arguments.device);
   if (!std::isfinite(arguments.min_ms) || arguments.min_ms < 0) {
     throw Error(ErrorCode::usage, "--min-ms", fmt::format("{}", arguments.min_ms), "milliseconds from 0 on");
+  }
+  if (arguments.answers) return answer(arguments);
+  if (!arguments.against.empty() && (arguments.stress || !arguments.paper.empty())) {
+    throw Error(ErrorCode::usage, "--against", arguments.stress ? "--stress" : "--paper", "cases that have times");
   }
   if (arguments.stress) {
     if (!arguments.plot.empty()) bench::prepare_plots(arguments.plot);
@@ -142,11 +187,14 @@ void add_options(CLI::App& app, Arguments& arguments) {
   app.add_option("--json", arguments.json, "write the measurement here");
   app.add_option("--csv", arguments.csv, "write the rows here");
   app.add_option("--plot", arguments.plot, "draw time against error, width, coverage and pixels into this folder");
+  app.add_option("--against", arguments.against,
+                 "time each case in turn with bin/dermis-bench of this build folder, and tell the ratio; no errors");
   app.add_flag("--stress", arguments.stress, "instead: a table of cases with numbers that no picture should hold");
   app.add_option("--paper", arguments.paper,
                  "write the claims of Jimenez et al. 2015 beside what is measured into this folder: table.md, "
                  "claims.json and figures");
   app.add_flag("--start-up-child", arguments.start_up_child)->group("");
+  app.add_flag(bench::answer_option, arguments.answers)->group("");
 }
 
 }  // namespace

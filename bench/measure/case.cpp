@@ -20,8 +20,12 @@ std::string method_on_picture(const Case& what) {
       return fmt::format("{}, rank {}", what.model(), what.design.rank);
     case Family::dermis_disc:
       return what.disc.prefiltered ? "discs, prefiltered" : "discs";
+    case Family::naive:
+      return "naive OpenCL";
     case Family::rule_2012:
-      return "rule of 2012";
+      return "rule of 2012, OpenCL";
+    case Family::simd_depth:
+      return "C++ vectors, depth";
     default:
       return "exact";
   }
@@ -71,12 +75,6 @@ std::string Case::name() const {
   if (threads > 0) text += fmt::format("/threads{}", threads);
   if (memory == Memory::interleaved_f16) text += "/rgba-half";
   return text;
-}
-
-std::string Case::series() const {
-  const bool is_usual = sheared && jitter == 0 && design.model != Model::gaussians;
-  const bool is_dermis = family == Family::dermis || family == Family::dermis_disc;
-  return is_on_picture() && is_dermis && is_usual ? method_on_picture(*this) : "";
 }
 
 }  // namespace dermis::bench

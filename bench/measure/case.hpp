@@ -19,7 +19,7 @@ enum class Family {
   texture_gaussians,  ///< dermis in texture space, by a chain of six Gaussians; the scene is the texture
   texture_recursive,  ///< dermis in texture space, by recursion
   naive,              ///< an OpenCL kernel, one work-item per pixel and pass
-  rule_2012,          ///< the rules of the 2012 shader, in such a kernel; of a picture, by the oracle
+  rule_2012,          ///< the rules of the 2012 shader, in such a kernel
   simd,               ///< C++ with vectors, constant offsets, no depth
   simd_depth,         ///< C++ with vectors, and weights that fall with the difference of depth
   opencv_separable,   ///< sepFilter2D with a dense kernel per channel
@@ -88,8 +88,6 @@ struct Case {
   std::string method() const;  ///< the name up to the scene
   /// "dermis/optimised/r2/t17/spheres/1920x1080/w16/c100"; on a picture "optimised, rank 2, 17 taps".
   std::string name() const;
-  /// The curve that a case on a picture belongs to in a plot; empty if it is in none.
-  std::string series() const;
 };
 
 }  // namespace dermis::bench

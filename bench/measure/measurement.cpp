@@ -6,11 +6,10 @@
 #include <numeric>
 #include <random>
 
-#include "dermis/error.hpp"
 #include "measure/frame_copy.hpp"
-#include "measure/peak_memory.hpp"
+#include "measure/other_build.hpp"
+#include "measure/runner.hpp"
 #include "measure/start_up.hpp"
-#include "measure/truth.hpp"
 #include "opponents/opponents.hpp"
 #include "report/stopwatch.hpp"
 #include "support/machine.hpp"
@@ -31,118 +30,27 @@ double percentile(std::vector<double> values, double share) {
   return values[static_cast<std::size_t>(std::lround(share * static_cast<double>(values.size() - 1)))];
 }
 
-/// Scenes, their truths and devices, each made once.
-class Stage {
- public:
-  explicit Stage(const Setup& setup) : device_name_(setup.device), threads_(setup.threads) {
-    if (setup.picture) scenes_[setup.picture->spec] = std::make_unique<Scene>(*setup.picture);
-  }
+bool is_picture_truth(const Case& what) { return what.is_on_picture() && what.family == Family::dermis_exact; }
 
-  const Scene& scene(const SceneSpec& spec) {
-    std::unique_ptr<Scene>& its = scenes_[spec];
-    if (!its) its = std::make_unique<Scene>(make_scene(spec));
-    return *its;
-  }
-
-  const Truth& truth(const SceneSpec& spec) {
-    std::unique_ptr<Truth>& its = truths_[spec];
-    if (!truth_maker_) truth_maker_.emplace(device(0));
-    if (!its) its = std::make_unique<Truth>(truth_maker_->truth_of(scene(spec)));
-    return *its;
-  }
-
-  /// `exact` is the result of the exact method on a picture: three planes.
-  void keep_truth(const SceneSpec& spec, const std::vector<float>& exact) {
-    truths_[spec] = std::make_unique<Truth>(truth_of_picture(scene(spec), exact));
-  }
-
-  /// 0: as many threads as the setup says.
-  const Device& device(int threads) {
-    if (threads == 0) threads = threads_;
-    std::unique_ptr<Device>& its = devices_[threads];
-    if (!its) its = std::make_unique<Device>(Device::open(device_name_, threads));
-    return *its;
-  }
-
- private:
-  std::string device_name_;
-  int threads_;
-  std::map<SceneSpec, std::unique_ptr<Scene>> scenes_;
-  std::map<SceneSpec, std::unique_ptr<Truth>> truths_;
-  std::map<int, std::unique_ptr<Device>> devices_;
-  std::optional<TruthMaker> truth_maker_;
-};
-
-/// A case that is ready, and the times of its runs.
-struct Runner {
-  Row row;
-  std::unique_ptr<Opponent> opponent;
-  std::vector<double> ms = {};
-  std::map<std::string, std::vector<double>> stages_ms = {};
-
-  void run() {
-    opponent->reset();
-    ms.push_back(time_ms([&] { opponent->run(); }));
-    if (const std::optional<Stats> stats = opponent->stats()) {
-      stages_ms["prepare"].push_back(stats->prepare_ms);
-      stages_ms["classify"].push_back(stats->classify_ms);
-      stages_ms["scatter"].push_back(stats->scatter_ms);
-      stages_ms["finish"].push_back(stats->finish_ms);
-    }
-  }
-
-  void warm_up() {
-    run();
-    ms.clear();
-    stages_ms.clear();
-  }
-
-  bool is_done(const Setup& setup) const {
-    const double total_ms = std::accumulate(ms.begin(), ms.end(), 0.0);
-    if (total_ms >= setup.enough_ms) return true;
-    return static_cast<int>(ms.size()) >= setup.rounds && total_ms >= setup.min_ms;
-  }
-};
-
-TapsDesign cheapest(const Case& what) {
-  const std::optional<TapsDesign> design =
-      cheapest_design(skin(), what.tolerance, skin_width_mm / what.scene.kernel_px);
-  if (!design) throw Error(ErrorCode::usage, "--filter", what.name(), "a tolerance that some design can hold");
-  return *design;
+bool is_done(const Runner& runner, const Setup& setup) {
+  const double total_ms = std::accumulate(runner.ms.begin(), runner.ms.end(), 0.0);
+  if (total_ms >= setup.enough_ms) return true;
+  return static_cast<int>(runner.ms.size()) >= setup.rounds && total_ms >= setup.min_ms;
 }
 
-void measure_error(Row& row, const std::vector<float>& result, Stage& stage) {
+/// Compares the first result with the truth. The exact method on a picture, which comes first, is the truth.
+void measure_error(Runner& runner, Stage& stage) {
+  Row& row = runner.row;
   const SceneSpec& spec = row.what.scene;
   if (stage.scene(spec).covered == 0) return;
+  const std::vector<float> result = runner.opponent->result();
+  if (is_picture_truth(row.what)) stage.keep_truth(spec, result);
   const Truth& truth = stage.truth(spec);
   Distance off = distance(result, truth);
   row.rel_l2 = off.rel_l2;
   row.max_err = off.max_err;
   row.rel_l2_of_parts = std::move(off.rel_l2_of_parts);
   row.truth = truth.source;
-}
-
-Runner prepare(Case what, Stage& stage) {
-  if (what.tolerance > 0) what.design = cheapest(what);
-  Runner runner;
-  Row& row = runner.row;
-  row.what = what;
-  row.loads = loads_of(what);
-  const Scene& scene = stage.scene(what.scene);
-  const Device& device = stage.device(what.threads);
-  const PeakMemory peak;
-  row.plan_ms = time_ms([&] { runner.opponent = make_opponent(what, scene, device); });
-  row.first_run_ms = time_ms([&] { runner.opponent->run(); });
-  row.peak_mb = peak.mb();
-  row.scratch_mib = static_cast<double>(runner.opponent->scratch_bytes()) / (1024 * 1024);
-  const std::vector<float> result = runner.opponent->result();
-  const bool is_truth = what.is_on_picture() && what.family == Family::dermis_exact;
-  if (is_truth) {
-    stage.keep_truth(what.scene, result);
-    runner.ms = {row.first_run_ms};  // it takes minutes
-  }
-  measure_error(row, result, stage);
-  return runner;
 }
 
 Runner start_up(const Case& what, const std::string& device_name) {
@@ -169,13 +77,31 @@ struct Copies {
   }
 };
 
+/// One run here and one of the other build, if there is one that knows the case, in either order.
+void run_both(Runner& runner, OtherBuild* other, bool other_is_first) {
+  const auto run_other = [&] {
+    const std::optional<double> ms = other != nullptr ? other->run_ms(runner.row.what.name()) : std::nullopt;
+    if (ms) runner.other_ms.push_back(*ms);
+  };
+  if (other_is_first) run_other();
+  runner.run();
+  if (!other_is_first) run_other();
+}
+
+void warm_up(Runner& runner, OtherBuild* other) {
+  run_both(runner, other, false);
+  runner.ms.clear();
+  runner.stages_ms.clear();
+  runner.other_ms.clear();
+}
+
 /// Runs the cases round by round, each round in another order, until all are done.
 void go_round(std::vector<Runner*> runners, Copies& copies, const Setup& setup, const Report& report) {
   std::mt19937 random(setup.seed);
   const std::size_t all = runners.size();
   copies.run();
   for (Runner* runner : runners) {
-    if (runner->row.first_run_ms < setup.enough_ms) runner->warm_up();
+    if (runner->row.first_run_ms < setup.enough_ms) warm_up(*runner, setup.other);
   }
   copies.ms.clear();
   while (!runners.empty()) {
@@ -185,11 +111,19 @@ void go_round(std::vector<Runner*> runners, Copies& copies, const Setup& setup, 
     for (std::size_t i = 0; i < runners.size(); ++i) {
       // A machine's speed changes within a round, so the copy runs several times in each.
       if (i % 8 == 0) copies.run();
-      runners[i]->run();
+      run_both(*runners[i], setup.other, random() % 2 == 0);
     }
-    std::erase_if(runners, [&](const Runner* runner) { return runner->is_done(setup); });
+    std::erase_if(runners, [&](const Runner* runner) { return is_done(*runner, setup); });
   }
   if (copies.ms.empty()) copies.run();
+}
+
+std::optional<OtherTimes> other_times(const Runner& runner) {
+  if (runner.other_ms.empty()) return std::nullopt;
+  std::vector<double> ratios;
+  for (std::size_t i = 0; i < runner.ms.size(); ++i) ratios.push_back(runner.ms[i] / runner.other_ms[i]);
+  const double ms = percentile(runner.other_ms, 0.5);
+  return OtherTimes{ms, percentile(runner.ms, 0.5) / ms, percentile(ratios, 0.1), percentile(ratios, 0.9)};
 }
 
 void finish(Runner& runner, double copy_ms, std::size_t covered) {
@@ -198,8 +132,8 @@ void finish(Runner& runner, double copy_ms, std::size_t covered) {
   row.ms_p10 = percentile(runner.ms, 0.1);
   row.ms_p90 = percentile(runner.ms, 0.9);
   row.runs = static_cast<int>(runner.ms.size());
-  if (row.runs == 0) row.plan_ms = row.first_run_ms = row.peak_mb = 0;  // the oracle's times are of no interest
-  if (!runner.opponent || row.runs == 0) return;
+  row.other = other_times(runner);
+  if (!runner.opponent) return;
   row.copy_ratio = row.ms / copy_ms;
   const double loads_per_ns = row.loads * static_cast<double>(covered) / (row.ms * 1e6);
   row.gb_s = 16 * loads_per_ns;
@@ -207,12 +141,6 @@ void finish(Runner& runner, double copy_ms, std::size_t covered) {
   if (runner.stages_ms.empty()) return;
   row.stages_ms.emplace();
   for (const auto& [name, values] : runner.stages_ms) (*row.stages_ms)[name] = percentile(values, 0.5);
-}
-
-/// Whether the case has one run or, by the oracle, none that is worth a time.
-bool runs_once(const Case& what) {
-  return what.family == Family::start_up ||
-         (what.is_on_picture() && (what.family == Family::dermis_exact || what.family == Family::rule_2012));
 }
 
 }  // namespace
@@ -226,9 +154,15 @@ Measurement measure_cases(const std::vector<Case>& cases, const Setup& setup, co
   runners.reserve(cases.size());
   for (const Case& what : cases) {
     report(preparation * static_cast<double>(runners.size()) / static_cast<double>(cases.size()), what.name());
-    runners.push_back(what.family == Family::start_up ? start_up(what, setup.device) : prepare(what, stage));
-    if (!runs_once(what)) going.push_back(&runners.back());
-    if (what.family == Family::start_up) continue;
+    const bool is_start_up = what.family == Family::start_up;
+    Runner& runner = runners.emplace_back(is_start_up ? start_up(what, setup.device) : prepare(what, stage));
+    if (is_start_up) continue;
+    if (setup.other == nullptr) measure_error(runner, stage);
+    if (is_picture_truth(what)) {
+      runner.ms = {runner.row.first_run_ms};  // one run takes minutes
+    } else {
+      going.push_back(&runner);
+    }
     copies.by_size.try_emplace({what.scene.width, what.scene.height}, stage.scene(what.scene).pixels());
   }
   go_round(going, copies, setup, report);
@@ -240,8 +174,8 @@ Measurement measure_cases(const std::vector<Case>& cases, const Setup& setup, co
            is_start_up ? 0 : stage.scene(spec).covered);
     found.rows.push_back(std::move(runner.row));
   }
-  if (setup.picture) {
-    found.picture = setup.picture->name;
+  if (setup.picture) found.picture = setup.picture->name;
+  if (setup.picture && setup.other == nullptr) {
     for (const Part& part : stage.truth(setup.picture->spec).parts)
       found.parts.push_back({part.name, part.places.size()});
   }

@@ -13,6 +13,8 @@
 
 namespace dermis::bench {
 
+class OtherBuild;
+
 /// The device, the picture if there is one, and the time to spend.
 struct Setup {
   std::string device;                 ///< as for Device::open
@@ -22,18 +24,27 @@ struct Setup {
   double min_ms = 300;                ///< least time of all runs of a case
   double enough_ms = 1500;            ///< a case whose runs take so long together has no more, whatever `rounds` says
   unsigned seed = 1;                  ///< of the order within a round
+  OtherBuild* other = nullptr;        ///< runs each case in turn with this build; no errors are measured then
+};
+
+/// The times of the other build in the same rounds.
+struct OtherTimes {
+  double ms = 0;                        ///< median
+  double ratio = 0;                     ///< Row::ms / ms: below 1 where this build is faster
+  double ratio_p10 = 0, ratio_p90 = 0;  ///< of the ratios within the rounds
 };
 
 /// The results of one case. Times are of the wall clock.
 struct Row {
   Case what;
-  double ms = 0;  ///< median; 0 if it has no time
+  double ms = 0;  ///< median
   double ms_p10 = 0, ms_p90 = 0;
   int runs = 0;
-  double copy_ratio = 0;  ///< ms / time of FrameCopy on a frame of that size
-  double loads = 0;       ///< image reads per pixel; 0 where that is not the measure
-  double gb_s = 0;        ///< 16 bytes per load: three floats of light and one of depth, from whatever cache
-  double gflop_s = 0;     ///< 12 per load: a multiply-add of light and one of the weight for three channels
+  double copy_ratio = 0;            ///< ms / time of FrameCopy on a frame of that size
+  double loads = 0;                 ///< image reads per pixel; 0 where that is not the measure
+  double gb_s = 0;                  ///< 16 bytes per load: three floats of light and one of depth, from whatever cache
+  double gflop_s = 0;               ///< 12 per load: a multiply-add of light and one of the weight for three channels
+  std::optional<OtherTimes> other;  ///< none if that build lacks the case
   std::optional<double> rel_l2, max_err;
   std::vector<double> rel_l2_of_parts;  ///< as Measurement::parts
   std::string truth;
@@ -55,6 +66,7 @@ struct Measurement {
   DeviceInfo device;
   double load_before = 0;                              ///< load_average() before it began
   std::string picture = {};                            ///< its name
+  std::string against = {};                            ///< the folder of the other build, if there is one
   std::vector<PartSize> parts = {};                    ///< of the picture
   std::map<std::pair<int, int>, double> copy_ms = {};  ///< median by size of frame
   std::vector<Row> rows = {};                          ///< in the order of the cases

@@ -1,5 +1,3 @@
-#include <algorithm>
-
 #include "dermis/exr.hpp"
 #include "measure/scene.hpp"
 
@@ -22,8 +20,8 @@ Scene read_picture(const std::filesystem::path& path, double mm_per_unit, const 
   for (const NamedMaterial& material : materials) {
     scene.materials.push_back({material.id, preset(material.preset).profile});
     scene.material_names.push_back(material.preset);
-    scene.covered += std::count(scene.ids.begin(), scene.ids.end(), static_cast<float>(material.id));
   }
+  for (std::size_t pixel = 0; pixel < scene.pixels(); ++pixel) scene.covered += scene.material_of(pixel) ? 1 : 0;
   return scene;
 }
 

@@ -49,11 +49,9 @@ Truth truth_of_picture(const Scene& scene, const std::vector<float>& exact) {
   Part edges = {"within 3 px of edges", {}};
   const std::vector<bool> is_near = near_edges(scene);
   for (std::size_t pixel = 0; pixel < scene.pixels(); ++pixel) {
-    const auto its = std::find_if(scene.materials.begin(), scene.materials.end(), [&](const Material& material) {
-      return static_cast<float>(material.id) == scene.ids[pixel];
-    });
-    if (its == scene.materials.end()) continue;
-    truth.parts[its - scene.materials.begin()].places.push_back(truth.pixels.size());
+    const std::optional<std::size_t> material = scene.material_of(pixel);
+    if (!material) continue;
+    truth.parts[*material].places.push_back(truth.pixels.size());
     if (is_near[pixel]) edges.places.push_back(truth.pixels.size());
     truth.pixels.push_back(pixel);
     for (std::size_t c = 0; c < 3; ++c) {

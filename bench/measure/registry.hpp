@@ -17,12 +17,11 @@ std::vector<Case> default_cases();
 std::vector<Case> all_cases();
 
 /// The cases on a picture: the separable method over models, ranks and tap counts, plain and with rotated taps; and
-/// discs.
+/// discs; and the opponents that know materials or depth.
 std::vector<Case> picture_cases();
 
-/// The cases that stand beside all others on a picture: first the exact method, whose result is their truth, then the
-/// rule of 2012.
-std::vector<Case> picture_references();
+/// The case that stands beside all others on a picture: the exact method, whose result is their truth.
+Case picture_reference();
 
 /// Keeps the cases whose name has a match of the regular expression (ECMAScript); all if it is empty. Throws
 /// Error(usage) that names --filter if it is malformed or matches nothing.

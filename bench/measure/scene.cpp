@@ -89,6 +89,28 @@ Frame Scene::frame(float* scattered) const {
           .scattered = {.host = scattered, .layout = layout}};
 }
 
+std::optional<std::size_t> Scene::material_of(std::size_t pixel) const {
+  if (is_background(pixel)) return std::nullopt;
+  if (ids.empty()) return 0;
+  const auto its = std::find_if(materials.begin(), materials.end(), [&](const Material& material) {
+    return static_cast<float>(material.id) == ids[pixel];
+  });
+  if (its == materials.end()) return std::nullopt;
+  return its - materials.begin();
+}
+
+double Scene::median_pixel_mm(std::size_t material) const {
+  std::vector<float> depths;
+  for (std::size_t pixel = 0; pixel < pixels(); ++pixel) {
+    if (material_of(pixel) == material) depths.push_back(depth[pixel]);
+  }
+  if (depths.empty()) return skin_width_mm;  // nobody will see it, and kernels of about a pixel need the least memory
+  if (camera.projection == Camera::Projection::orthographic) return 1 / px_per_mm();
+  const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
+  std::nth_element(depths.begin(), middle, depths.end());
+  return static_cast<double>(*middle) / px_per_mm();
+}
+
 Scene make_scene(const SceneSpec& spec) {
   const bool is_flat = spec.geometry == Geometry::flat;
   const int width = spec.width;
@@ -104,7 +126,7 @@ Scene make_scene(const SceneSpec& spec) {
               .light = std::vector<float>(3 * plane),
               .depth = std::vector<float>(plane, unseen_depth),
               .materials = {{.profile = skin()}}};
-  scene.mm_per_unit = (is_flat ? 1 : focal_px) / scene.px_per_mm();
+  scene.mm_per_unit = scene.camera.scale_x * skin_width_mm / spec.kernel_px;
   constexpr std::array<double, 3> tint = {0.9, 0.7, 0.55};
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {

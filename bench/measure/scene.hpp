@@ -4,6 +4,7 @@
 #include <array>
 #include <compare>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -63,13 +64,20 @@ struct Scene {
   std::size_t covered = 0;                       ///< pixels that scatter
 
   std::size_t pixels() const { return depth.size(); }
-  bool is_background(std::size_t pixel) const { return depth[pixel] >= 1e9F; }
+  bool is_background(std::size_t pixel) const {
+    const bool is_orthographic = camera.projection == Camera::Projection::orthographic;
+    return !(depth[pixel] < 1e9F && (depth[pixel] > 0 || is_orthographic));
+  }
+  /// The number of a pixel's material among `materials`; none if it does not scatter.
+  std::optional<std::size_t> material_of(std::size_t pixel) const;
   /// The index of a value among the floats of the light.
   std::size_t at(std::size_t pixel, std::size_t channel) const {
     return (pixel * layout.pixel_stride + channel * layout.channel_stride) / sizeof(float);
   }
-  /// Pixels per mm of a surface at view depth 1 that faces the camera, in a made scene.
-  double px_per_mm() const { return spec.kernel_px / skin_width_mm; }
+  /// Pixels per mm, along x, of a surface at view depth 1 that faces the camera.
+  double px_per_mm() const { return camera.scale_x / mm_per_unit; }
+  /// The width of a pixel, mm, on a surface that faces the camera at the median depth of a material's pixels.
+  double median_pixel_mm(std::size_t material) const;
   /// Views of the images and of an output of the same layout.
   Frame frame(float* scattered) const;
 };

@@ -1,11 +1,7 @@
 #include "measure/start_up.hpp"
 
 #include <fmt/format.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
-#include <array>
-#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -16,6 +12,7 @@
 #include "measure/peak_memory.hpp"
 #include "opponents/opponents.hpp"
 #include "report/stopwatch.hpp"
+#include "support/child_process.hpp"
 
 namespace dermis::bench {
 
@@ -42,35 +39,15 @@ class CacheFolder {
   std::string path_;
 };
 
-[[noreturn]] void become_child(int to_parent, const std::string& cache, const std::string& device_name) {
-  dup2(to_parent, STDOUT_FILENO);
-  setenv("POCL_CACHE_DIR", cache.c_str(), 1);
-  setenv("CUDA_CACHE_PATH", cache.c_str(), 1);
-  std::string program = "/proc/self/exe";
-  std::string child = "--start-up-child";
-  std::string device = "--device";
-  std::string name = device_name;
-  char* const arguments[] = {program.data(), child.data(), name.empty() ? nullptr : device.data(), name.data(),
-                             nullptr};
-  execv(program.c_str(), arguments);
-  _exit(127);
-}
-
 StartUp run_child(const std::string& cache, const std::string& device_name) {
-  std::array<int, 2> ends{};
-  if (pipe(ends.data()) != 0) throw Error(ErrorCode::device, "start-up", "no pipe", "a pipe");
-  const pid_t child = fork();
-  if (child == 0) become_child(ends[1], cache, device_name);
-  close(ends[1]);
-  std::string text;
-  std::array<char, 256> part{};
-  for (ssize_t size = 0; (size = read(ends[0], part.data(), part.size())) > 0;) text.append(part.data(), size);
-  close(ends[0]);
-  int status = -1;
-  if (child < 0 || waitpid(child, &status, 0) != child || status != 0) {
+  ChildProcess child({.path = "/proc/self/exe",
+                      .arguments = {"--start-up-child", "--device", device_name},
+                      .environment = {{"POCL_CACHE_DIR", cache}, {"CUDA_CACHE_PATH", cache}}});
+  const std::optional<std::string> text = child.read_line();
+  if (const int status = child.wait(); !text || status != 0) {
     throw Error(ErrorCode::device, "start-up", fmt::format("exit status {} of a second process", status), "success");
   }
-  const auto found = nlohmann::json::parse(text);
+  const auto found = nlohmann::json::parse(*text);
   return {found.at("plan_ms"), found.at("first_run_ms"), found.at("second_plan_ms"), found.at("peak_mb")};
 }
 

@@ -11,6 +11,33 @@ int dense_reach_px(const SceneSpec& scene) {
   return static_cast<int>(std::lround(reach * scene.kernel_px));
 }
 
+double width_over_skin(const Profile& profile) {
+  // 99.9 % of the marginal lie within it, which the program calls the radius of a kernel.
+  const auto reach_mm = [](const Profile& one) { return one.half_width(one.widest_channel(), 0.999); };
+  return reach_mm(profile) / reach_mm(skin());
+}
+
+double depth_radius_mm(const Profile& profile) { return skin_width_mm * width_over_skin(profile); }
+
+std::string limits_of(const Case& what) {
+  switch (what.family) {
+    case Family::naive:
+      return "takes every surface to face the camera";
+    case Family::rule_2012:
+      return "takes every surface to face the camera, and light from other materials and from what does not scatter, "
+             "the less the farther that is in depth; leaves all light where it is if R has a pole at 0, as Burley's";
+    case Family::simd_depth:
+      return "takes every surface to face the camera, and each material to lie at the median depth of its pixels";
+    case Family::simd:
+    case Family::opencv_separable:
+    case Family::opencv_bilateral:
+    case Family::fft:
+      return "knows no depth and no materials";
+    default:
+      return "";
+  }
+}
+
 double loads_of(const Case& what) {
   switch (what.family) {
     case Family::dermis:

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <memory>
-#include <vector>
+#include <string>
 
 #include "dermis/device.hpp"
 #include "measure/case.hpp"
@@ -10,12 +10,6 @@
 #include "opponents/opponent.hpp"
 
 namespace dermis::bench {
-
-/// Weights per channel of a symmetric pass, and where they lie on the surface.
-struct PassTaps {
-  std::vector<double> offsets_mm;
-  std::vector<std::array<float, 3>> weights;  ///< sum to 1 in every channel
-};
 
 std::unique_ptr<Opponent> make_dermis(const Case& what, const Scene& scene, const Device& device);
 std::unique_ptr<Opponent> make_texture(const Case& what, const Scene& scene, const Device& device);
@@ -31,6 +25,16 @@ bool has_opencv();
 
 /// Any of them. `device` has as many threads as the case asks for.
 std::unique_ptr<Opponent> make_opponent(const Case& what, const Scene& scene, const Device& device);
+
+/// What an opponent leaves out that the surface integral has; empty if it is dermis, which METHODS.md describes.
+std::string limits_of(const Case& what);
+
+/// How much farther a profile reaches than "skin".
+double width_over_skin(const Profile& profile);
+
+/// The difference of depth, mm, from which the naive and the vectorised filter count a tap as on another surface: the
+/// largest standard deviation of skin, near which both are least off on the spheres and on the sample picture.
+double depth_radius_mm(const Profile& profile);
 
 /// Image reads per pixel of a run; 0 where that is not the measure.
 double loads_of(const Case& what);

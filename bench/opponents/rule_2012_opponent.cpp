@@ -1,46 +1,48 @@
 // The rules that real-time shaders of 2012 follow (Jimenez and Gutierrez, Separable Subsurface Scattering, report
 // RR-02-12), in a kernel of a work-item per pixel: the radial profile itself as one-dimensional weights, quadratic
-// spacing, linear interpolation of light and nearest depth, and taps off the surface mixed towards the centre. On a
-// picture, which has several materials, it is the oracle that follows them.
+// spacing, linear interpolation of light and nearest depth, and taps off the surface mixed towards the centre. Lengths
+// are those of skin; of other materials they are as much longer as their profiles are wider.
 #include <algorithm>
 #include <cmath>
 
-#include "dermis/oracle/rule_2012.hpp"
 #include "opponents/opencl_passes.hpp"
 
 namespace dermis::bench {
 
 namespace {
 
-/// The kernel's reach, mm: 2 for up to 20 taps, else 3, so that the look depends on the quality.
+/// The kernel's reach in skin, mm: 2 for up to 20 taps, else 3, so that the look depends on the quality.
 double reach_mm(int count) { return count > 20 ? 3 : 2; }
 
-/// The difference of depth, mm, from which a tap counts as the centre. The rule is min(1, 300 d w |dz|) with d the
-/// distance to the projection window and w the width in scene units that 3 mm are; with the demo's lens of 20 degrees
-/// (d = 5.67) and w = 0.012 it reaches 1 at dz = 4.1 w = 12 mm.
+/// The difference of depth in skin, mm, from which a tap counts as the centre. The rule is min(1, 300 d w |dz|) with d
+/// the distance to the projection window and w the width in scene units that 3 mm are; with the demo's lens of 20
+/// degrees (d = 5.67) and w = 0.012 it reaches 1 at dz = 4.1 w = 12 mm.
 constexpr double full_mix_mm = 12;
 
 constexpr const char* source = R"(
-kernel void pass(global const float4* from, global float4* to, global const float4* taps, int tap_count, int width,
-                 int height, int step_x, int step_y, float px_per_mm, int px_per_mm_falls, float mm_per_unit,
-                 float mix_per_mm) {
+kernel void pass(global const float4* from, global float4* to, global const ushort* material, global const float4* taps,
+                 global const float* mixes_per_mm, int tap_count, int width, int height, int step_x, int step_y,
+                 float px_per_mm, int px_per_mm_falls, float mm_per_unit) {
   const int x = get_global_id(0);
   const int y = get_global_id(1);
   const int here = y * width + x;
   const float4 centre = from[here];
-  if (centre.w >= 1e9f) {
+  const int mine = material_of(material, here, centre.w);
+  if (mine == no_material) {
     to[here] = centre;
     return;
   }
+  global const float4* its_taps = taps + mine * tap_count;
+  const float mix_per_mm = mixes_per_mm[mine];
   const float spacing = px_per_mm_falls ? px_per_mm / centre.w : px_per_mm;
   const int at = step_x ? x : y;
   const int last = (step_x ? width : height) - 1;
   const int stride = step_x ? 1 : width;
   const int line = step_x ? y * width : x;
-  float3 sum = taps[tap_count / 2].xyz * centre.xyz;
+  float3 sum = its_taps[tap_count / 2].xyz * centre.xyz;
   for (int i = 0; i < tap_count; ++i) {
     if (i == tap_count / 2) continue;
-    const float4 tap = taps[i];
+    const float4 tap = its_taps[i];
     const float position = clamp(at + tap.w * spacing, 0.0f, (float)last);
     const int low = (int)position;
     const int high = min(low + 1, last);
@@ -55,9 +57,10 @@ kernel void pass(global const float4* from, global float4* to, global const floa
 }
 )";
 
-PassTaps slice_taps(int count) {
-  PassTaps taps;
-  const double reach = reach_mm(count);
+PassTaps slice_taps(const Profile& profile, int count) {
+  const double width = width_over_skin(profile);
+  PassTaps taps = {.falloff = 1 / (width * full_mix_mm)};
+  const double reach = width * reach_mm(count);
   for (int i = 0; i < count; ++i) {
     const double even = reach * (2.0 * i / (count - 1) - 1);
     taps.offsets_mm.push_back(std::copysign(even * even / reach, even));
@@ -69,7 +72,7 @@ PassTaps slice_taps(int count) {
     const double after = taps.offsets_mm[std::min(i + 1, count - 1)];
     for (int c = 0; c < 3; ++c) {
       constexpr double middle_mm = 1e-6;  // Profile::radial wants a distance above 0
-      weights[i][c] = (after - before) / 2 * skin().radial(c, std::max(std::abs(taps.offsets_mm[i]), middle_mm));
+      weights[i][c] = (after - before) / 2 * profile.radial(c, std::max(std::abs(taps.offsets_mm[i]), middle_mm));
       sum[c] += weights[i][c];
     }
   }
@@ -80,39 +83,12 @@ PassTaps slice_taps(int count) {
   return taps;
 }
 
-class OracleRule final : public Opponent {
- public:
-  OracleRule(const Case& what, const Scene& scene) : scene_(scene), count_(what.design.count) {
-    for (const Material& material : scene.materials) {
-      const Profile& profile = material.profile;
-      slices_.push_back({material.id, [&profile](int channel, double r_mm) { return profile.radial(channel, r_mm); },
-                         profile.half_width(profile.widest_channel(), 0.999)});
-    }
-  }
-
-  void run() override {
-    const oracle::Picture picture = oracle::rule_2012(scene_.frame(nullptr), slices_, count_);
-    planes_.resize(picture.values.size());
-    for (std::size_t i = 0; i < planes_.size(); ++i) {
-      planes_[i % 3 * scene_.pixels() + i / 3] = static_cast<float>(picture.values[i]);
-    }
-  }
-
-  std::vector<float> result() override { return planes_; }
-
- private:
-  const Scene& scene_;
-  int count_;
-  std::vector<oracle::SliceMaterial> slices_;
-  std::vector<float> planes_;
-};
-
 }  // namespace
 
 std::unique_ptr<Opponent> make_rule_2012(const Case& what, const Scene& scene, const Device& device) {
-  if (what.is_on_picture()) return std::make_unique<OracleRule>(what, scene);
-  return std::make_unique<OpenclPasses>(source, slice_taps(what.design.count), static_cast<float>(1 / full_mix_mm),
-                                        scene, device);
+  std::vector<PassTaps> taps;
+  for (const Material& material : scene.materials) taps.push_back(slice_taps(material.profile, what.design.count));
+  return std::make_unique<OpenclPasses>(source, taps, scene, device);
 }
 
 }  // namespace dermis::bench

@@ -9,8 +9,11 @@ namespace dermis::bench {
 /// Strips are this wide; both passes of one stay in a second-level cache.
 inline constexpr int strip_width_px = 64;
 
-/// A strip and what to filter it with. Planes have room for the largest offset left and right of the frame, and for a
-/// whole strip.
+/// Depths from here on are background, and stand for what is of another material.
+inline constexpr float background_from = 1e9F;
+
+/// A strip of one material and what to filter it with. Planes have room for the largest offset left and right of the
+/// frame, and for a whole strip. With depth, what is background keeps what was in `scattered`.
 struct Strip {
   const float* light[3];
   const float* depth;
@@ -95,6 +98,12 @@ struct Sums {
   }
 
   V result(int c) const { return with_depth ? sum[c] / weight[c] : sum[c]; }
+
+  /// The result, or what was there before where it is background.
+  V result_over(int c, const float* before) const {
+    const V limit = V{} + background_from;
+    return !with_depth ? result(c) : depth < limit ? result(c) : load<lanes>(before);
+  }
 };
 
 template <int lanes, bool with_depth>
@@ -130,7 +139,10 @@ inline void pass_along_y(const Strip& strip, int y) {
       sums.add(strip, i, ring, row(before) + x, row(after) + x, strip.depth + before * strip.pitch + column,
                strip.depth + after * strip.pitch + column, has_before, has_after);
     }
-    for (int c = 0; c < 3; ++c) store<lanes>(strip.scattered[c] + at, sums.result(c));
+    for (int c = 0; c < 3; ++c) {
+      float* const to = strip.scattered[c] + at;
+      store<lanes>(to, sums.result_over(c, to));
+    }
   }
 }
 

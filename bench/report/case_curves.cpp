@@ -42,6 +42,10 @@ Look look_of(const Case& what) {
   }
   if (what.design.model == Model::pre_integrated) return {"dermis, importance-sampled", "#e08e1b", 6};
   if (what.design.model == Model::gaussians) return {"dermis, Gaussians", "#c77ca5", 6};
+  if (!what.sheared) {
+    return what.design.rank == 1 ? Look{"dermis, rank 1, plain passes", "#5fb8b0", 6}
+                                 : Look{"dermis, rank 2, plain passes", "#2f8f88", 4};
+  }
   if (what.tolerance > 0) return {"dermis, 1 % predicted", "#e0457b", 15};
   constexpr Look ranks[] = {
       {"dermis, rank 1", "#7fb2e5", 7}, {"dermis, rank 2", "#2f6db5", 7}, {"dermis, rank 3", "#123d73", 7}};
@@ -61,8 +65,9 @@ std::string label_style(std::string_view colour, bool is_below) {
 bool by_x(const Point& a, const Point& b) { return a.x < b.x; }
 
 bool is_default_caller(const Row& row) {
-  return row.what.threads == 0 && row.what.memory == Memory::planar_f32 && row.ms > 0 &&
-         row.what.family != Family::start_up && row.what.family != Family::dermis_exact;
+  const Case& what = row.what;
+  return what.threads == 0 && what.memory == Memory::planar_f32 && what.jitter == 0 && row.ms > 0 &&
+         what.family != Family::start_up && what.family != Family::dermis_exact;
 }
 
 std::vector<Curve> curves_of(const Measurement& measurement, const Choice& belongs, const Value& x, const Value& y,

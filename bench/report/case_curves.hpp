@@ -24,7 +24,7 @@ std::string line_style(std::string_view colour, int point_type, int dash_type = 
 std::string label_style(std::string_view colour, bool is_below = false);
 bool by_x(const Point& a, const Point& b);
 
-/// Whether the row is one of a frame in planes of float, on all threads.
+/// Whether the row is one of a frame of floats, on all threads, with taps that are the same at every pixel.
 bool is_default_caller(const Row& row);
 
 /// The rows that `belongs` picks: one curve per method (dermis: per rank), in the order of the rows.

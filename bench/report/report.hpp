@@ -8,7 +8,7 @@
 namespace dermis::bench {
 
 /// A text for people has the machine, one table per group of cases, and the meaning of their columns. The table of a
-/// picture is Markdown.
+/// picture is Markdown. Against another build there is one table, of times and their ratio.
 std::string table_of(const Measurement& measurement);
 
 /// The JSON is an object with version, machine, device, picture, copy_ms by size, and rows. A value that was not

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "dermis/version.hpp"
+#include "opponents/opponents.hpp"
 #include "report/report.hpp"
 #include "support/machine.hpp"
 #include "support/parallel.hpp"
@@ -23,6 +24,8 @@ Json json_of(const Row& row, const std::vector<PartSize>& parts) {
   const Case& what = row.what;
   const bool is_made = !what.is_on_picture();
   const bool has_taps = !what.model().empty();
+  const std::string limits = limits_of(what);
+  const OtherTimes other = row.other.value_or(OtherTimes{});
   Json object = {{"name", what.name()},
                  {"group", name_of(what.group)},
                  {"method", name_of(what.family)},
@@ -43,6 +46,8 @@ Json json_of(const Row& row, const std::vector<PartSize>& parts) {
                  {"ms", or_null(row.ms)},
                  {"ms_p10", or_null(row.ms_p10)},
                  {"ms_p90", or_null(row.ms_p90)},
+                 {"other_ms", or_null(other.ms)},
+                 {"other_ratio", or_null(other.ratio)},
                  {"copy_ratio", or_null(row.copy_ratio)},
                  {"loads", or_null(row.loads)},
                  {"gb_s", or_null(row.gb_s)},
@@ -56,6 +61,7 @@ Json json_of(const Row& row, const std::vector<PartSize>& parts) {
                  {"peak_mb", or_null(row.peak_mb)},
                  {"scratch_mib", or_null(row.scratch_mib)},
                  {"kernel_cache", or_null(what.family == Family::start_up, what.cache_is_filled ? "filled" : "empty")},
+                 {"limits", or_null(!limits.empty(), limits)},
                  {"rel_l2_of_parts", nullptr}};
   for (std::size_t i = 0; i < row.rel_l2_of_parts.size(); ++i) {
     object["rel_l2_of_parts"][parts[i].name] = row.rel_l2_of_parts[i];
@@ -87,6 +93,7 @@ std::string json_of(const Measurement& measurement) {
       {"driver", device.driver},
       {"threads", device.compute_units},
       {"picture", or_null(!measurement.picture.empty(), measurement.picture)},
+      {"against", or_null(!measurement.against.empty(), measurement.against)},
       {"copy_ms", copy_ms},
       {"rows", rows}};
   return object.dump(2) + "\n";

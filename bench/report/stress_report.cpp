@@ -69,11 +69,13 @@ Panel panel_of(const std::string& group, const std::vector<StressRow>& rows) {
   for (std::size_t i = 0; i < rows.size(); ++i) {
     names += fmt::format("{}'{}' -{}", i == 0 ? "" : ", ", rows[i].name, i);
   }
-  Panel panel{group,
-              fmt::format("set logscale x\nset xrange [{}:1]\nset yrange [{}:0.5]\nset format x '10^{{%T}}'\n"
-                          "set xtics 1e-9, 1000 font ',11'\nset ytics ({}) font ',9'\nset lmargin 25\nset rmargin 2\n"
-                          "set xlabel 'error (left edge: 1e-9 or less)' font ',11'\nset key below maxrows 2 font ',10'",
-                          least_shown / 2, -static_cast<double>(rows.size()) + 0.5, names)};
+  Panel panel{
+      group,
+      fmt::format(
+          "set logscale x\nset xrange [{}:1]\nset yrange [{}:0.5]\nset format x '10^{{%T}}'\n"
+          "set xtics 1e-9, 1000 font ',11'\nset ytics ({}) font ',9'\nset lmargin 25\nset rmargin 2\n"
+          "set xlabel 'error (left edge: 1e-9 or less)' font ',11' offset 0,0.6\nset key below maxrows 2 font ',10'",
+          least_shown / 2, -static_cast<double>(rows.size()) + 0.5, names)};
   panel.curves.push_back(curve_of(rows, "relative L2", colours[0], 7, &StressRow::rel_l2));
   panel.curves.push_back(curve_of(rows, "energy", colours[3], 9, &StressRow::energy));
   panel.curves.push_back(curve_of(rows, "largest relative", colours[1], 4, &StressRow::max_rel));
@@ -83,11 +85,11 @@ Panel panel_of(const std::string& group, const std::vector<StressRow>& rows) {
 }
 
 Panel panel_of(const std::vector<SumRow>& rows) {
-  Panel panel{
-      "weighted means on the host, six decades of light",
-      "set logscale xy\nset xrange [12:3000]\nset yrange [1e-8:1e-1]\nset format y '10^{%T}'\n"
-      "set xtics (17, 65, 257, 2000)\nset xlabel 'values' font ',11'\nset ylabel 'relative error, rms' font ',11'\n"
-      "set key below maxrows 3 font ',10'"};
+  Panel panel{"weighted means on the host, six decades of light",
+              "set logscale xy\nset xrange [12:3000]\nset yrange [1e-8:1e-1]\nset format y '10^{%T}'\n"
+              "set xtics (17, 65, 257, 2000) font ',11'\nset ytics font ',11'\n"
+              "set xlabel 'values' font ',11' offset 0,0.6\nset ylabel 'relative error, rms' font ',11'\n"
+              "set key below maxrows 3 font ',10'"};
   constexpr std::array shown = {"rounded once, from double", "in order", "16 lanes", "Kahan",
                                 "half values, float sums",   "half sums"};
   for (const SumRow& row : rows) {
@@ -117,7 +119,7 @@ void draw_figure(const std::filesystem::path& path, const std::vector<StressRow>
     panels.push_back(panel_of(group, of_group));
   }
   panels.push_back(panel_of(sums));
-  draw("--plot", path, panels, 3);
+  draw("--plot", path, panels, 2, {.width_px = 640, .height_px = 440});
 }
 
 }  // namespace

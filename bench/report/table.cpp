@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "opponents/opponents.hpp"
 #include "report/report.hpp"
 #include "support/machine.hpp"
 #include "support/parallel.hpp"
@@ -51,12 +52,11 @@ std::string picture_table(const std::vector<const Row*>& rows, const Measurement
   text += rule + "\n";
   for (const Row* row : rows) {
     const std::string loads = row->loads > 0 ? fmt::format("{}", row->loads) : "all in reach";
-    const std::string numbers =
-        row->runs == 0   ? " | | "
-        : row->runs == 1 ? fmt::format("{:.0f} | {:.0f} | {:.0f}", row->ms, row->copy_ratio, row->scratch_mib)
-                         : fmt::format("{:.1f} ({:.1f}..{:.1f}) | {:.1f} | {:.0f}", row->ms, row->ms_p10, row->ms_p90,
-                                       row->copy_ratio, row->scratch_mib);
-    text += fmt::format("| {} | {} | {} |", row->what.name(), loads, numbers);
+    const std::string times = row->runs == 1 ? fmt::format("{:.0f} | {:.0f}", row->ms, row->copy_ratio)
+                                             : fmt::format("{:.1f} ({:.1f}..{:.1f}) | {:.1f}", row->ms, row->ms_p10,
+                                                           row->ms_p90, row->copy_ratio);
+    const std::string memory = row->scratch_mib > 0 ? fmt::format("{:.0f}", row->scratch_mib) : "";
+    text += fmt::format("| {} | {} | {} | {} |", row->what.name(), loads, times, memory);
     for (const double error : row->rel_l2_of_parts) text += fmt::format(" {:.2f} % |", 100 * error);
     text += "\n";
   }
@@ -71,6 +71,36 @@ std::string group_table(Group group, const std::vector<const Row*>& rows) {
                       "rel L2", "max", "plan ms", "peak MB");
   for (const Row* row : rows) text += line_of(*row, name_width);
   return text;
+}
+
+/// What opponents leave out, once for each of them.
+std::string limits_of_all(const Measurement& measurement) {
+  std::map<std::string_view, std::string> limits;
+  for (const Row& row : measurement.rows) limits[name_of(row.what.family)] = limits_of(row.what);
+  std::erase_if(limits, [](const auto& one) { return one.second.empty(); });
+  std::string text;
+  for (const auto& [family, its] : limits) text += fmt::format("- {} {}\n", family, its);
+  return text.empty() ? text : "\n" + text;
+}
+
+std::string against_table(const Measurement& measurement) {
+  std::size_t width = 0;
+  for (const Row& row : measurement.rows) width = std::max(width, row.what.name().size());
+  constexpr std::string_view format = "{:<{}}  {:>9} {:>9} {:>7} {:>14} {:>7}\n";
+  std::string text = "\n" + fmt::format(format, "against " + measurement.against, width, "ms", "its ms", "ratio",
+                                        "p10..p90", "rounds");
+  for (const Row& row : measurement.rows) {
+    const std::string ms = fmt::format("{:.2f}", row.ms);
+    const OtherTimes other = row.other.value_or(OtherTimes{});
+    text += row.other ? fmt::format(format, row.what.name(), width, ms, fmt::format("{:.2f}", other.ms),
+                                    fmt::format("{:.3f}", other.ratio),
+                                    fmt::format("{:.3f}..{:.3f}", other.ratio_p10, other.ratio_p90), row.runs)
+                      : fmt::format(format, row.what.name(), width, ms, "-", "-", "-", row.runs);
+  }
+  return text +
+         "\nms: wall clock, medians of rounds in each of which both builds run the case once, in either order. ratio: "
+         "of the medians, below 1\nwhere this build is faster; p10..p90: of the ratios within rounds. -: the other "
+         "build has no such case. Start-up has no rounds.\n";
 }
 
 std::string truths_of(const Measurement& measurement) {
@@ -107,6 +137,7 @@ std::string table_of(const Measurement& measurement) {
     text += fmt::format("copy of {}x{}: {:.3f} ms, {:.1f} GB/s\n", size.first, size.second, ms,
                         7.0 * sizeof(float) * size.first * size.second / (ms * 1e6));
   }
+  if (!measurement.against.empty()) return text + against_table(measurement);
   for (const auto& [group, name] : word_table<Group>) {
     std::vector<const Row*> rows;
     for (const Row& row : measurement.rows) {
@@ -117,6 +148,7 @@ std::string table_of(const Measurement& measurement) {
             : group == Group::picture ? picture_table(rows, measurement)
                                       : group_table(group, rows);
   }
+  text += limits_of_all(measurement);
   if (!measurement.picture.empty()) return text;
   const std::string truths = truths_of(measurement);
   if (!truths.empty()) text += "\nerrors are against\n" + truths;

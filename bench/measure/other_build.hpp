@@ -1,0 +1,37 @@
+// The dermis-bench of another build, which runs the cases of this one in turn with it.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "measure/measurement.hpp"
+#include "support/child_process.hpp"
+
+namespace dermis::bench {
+
+/// The option of a dermis-bench that answers: it prints `answer_greeting`, then for each name of a case on standard
+/// input one line: the milliseconds of a run, or "unknown", or "error: " and what is wrong.
+inline constexpr const char* answer_option = "--answer";
+inline constexpr const char* answer_greeting = "dermis-bench answers";
+
+class OtherBuild {
+ public:
+  /// Starts `folder`/bin/dermis-bench with these arguments and `answer_option`. Throws Error that names --against if
+  /// there is none, or it does not answer.
+  OtherBuild(const std::filesystem::path& folder, std::vector<std::string> arguments);
+
+  /// Milliseconds of one run of a case; none if the build has no case of that name. Throws Error(device) that names
+  /// --against if the case fails there.
+  std::optional<double> run_ms(const std::string& name);
+
+ private:
+  std::string path_;
+  std::optional<ChildProcess> process_;
+};
+
+/// Is that process: answers from the cases until standard input ends.
+void answer_requests(const std::vector<Case>& cases, const Setup& setup);
+
+}  // namespace dermis::bench
