@@ -1,6 +1,5 @@
 #include "taps/placement/tap_fit.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -89,6 +88,8 @@ class QuadraticForm {
   /// Fills the rows of a pair, in the columns of the first `others` pairs.
   void fill(std::vector<Equations>& equations, const std::vector<double>& offsets_px, std::size_t pair,
             std::size_t others) const;
+  /// Takes an unknown out of the equations in factor_ and x_, as 0.
+  void hold(int row) const;
   double product(const Moments& moments, double offset_a, double offset_b) const;
   double target(int term, double offset_px) const;
 
@@ -97,6 +98,9 @@ class QuadraticForm {
   double constant_ = 0;
   std::vector<Moments> quadratic_;  ///< per pair of terms: AxisError::pair_of
   std::vector<Moments> linear_;     ///< per term
+  mutable MatrixXd factor_;         ///< these three are kept by change() for the next time
+  mutable VectorXd x_;
+  mutable std::vector<int> held_;
 };
 
 QuadraticForm::QuadraticForm(const ChannelOnPixels& channel, const Responses& beta, const VectorXd& sums, bool joint,
@@ -150,23 +154,28 @@ double QuadraticForm::product(const Moments& moments, double offset_a, double of
   return sum;
 }
 
-/// Solves equations for weights of which those marked in `non_negative` are not below 0. A weight that would be below
-/// is held at 0, one after the other; `right` is 0 there at the end.
-VectorXd solve_non_negative(MatrixXd& matrix, VectorXd& right, const std::vector<bool>& non_negative) {
-  const auto size = static_cast<int>(right.size());
-  std::vector<bool> held(size, false);
-  for (;;) {
-    VectorXd x = matrix.selfadjointView<Eigen::Lower>().llt().solve(right);
-    int worst = -1;
-    for (int row = 0; row < size; ++row) {
-      if (non_negative[row] && !held[row] && x[row] < 0 && (worst < 0 || x[row] < x[worst])) worst = row;
+/// Solves equations by Cholesky's method. The lower half of `matrix`, which is all that is read of it, becomes the
+/// factor. An unknown of which rounding has left nothing is 0. Eigen's solver takes several times as long for so few.
+void solve_in_place(MatrixXd& matrix, VectorXd& x) {
+  const Index size = x.size();
+  for (Index k = 0; k < size; ++k) {
+    double* const column = matrix.col(k).data();
+    const double over_pivot = column[k] > 0 ? 1 / std::sqrt(column[k]) : 0;
+    column[k] = over_pivot;
+    for (Index row = k + 1; row < size; ++row) column[row] *= over_pivot;
+    for (Index j = k + 1; j < size; ++j) {
+      double* const later = matrix.col(j).data();
+      const double factor = column[j];
+      for (Index row = j; row < size; ++row) later[row] -= factor * column[row];
     }
-    if (worst < 0) return x;
-    held[worst] = true;
-    matrix.row(worst).head(worst).setZero();
-    matrix.col(worst).tail(size - worst).setZero();
-    matrix(worst, worst) = 1;
-    right[worst] = 0;
+    x[k] *= over_pivot;
+    for (Index row = k + 1; row < size; ++row) x[row] -= x[k] * column[row];
+  }
+  for (Index k = size - 1; k >= 0; --k) {
+    const double* const column = matrix.col(k).data();
+    double rest = x[k];
+    for (Index row = k + 1; row < size; ++row) rest -= column[row] * x[row];
+    x[k] = rest * column[k];
   }
 }
 
@@ -217,18 +226,35 @@ double QuadraticForm::change(const Equations& its, int first, const std::vector<
                              MatrixXd* weights) const {
   const auto size = static_cast<int>(its.right.size());
   const int pairs = size / (joint_ ? terms_ : 1);
-  std::vector<bool> not_below(size);
-  for (int row = 0; row < size; ++row) not_below[row] = non_negative[first + row / pairs];
-  MatrixXd matrix = its.matrix;
-  VectorXd right = its.right;
   // A term of no or little scale must not grow without bound.
   constexpr double ridge = 1e-11;
-  matrix.diagonal().array() += ridge * matrix.diagonal().maxCoeff() + std::numeric_limits<double>::min();
-  const VectorXd x = solve_non_negative(matrix, right, not_below);
-  if (weights != nullptr) {
-    for (int row = 0; row < size; ++row) (*weights)(row % pairs, first + row / pairs) = x[row];
+  const double added = ridge * its.matrix.diagonal().maxCoeff() + std::numeric_limits<double>::min();
+  held_.clear();
+  for (;;) {
+    factor_ = its.matrix;
+    factor_.diagonal().array() += added;
+    x_ = its.right;
+    for (const int row : held_) hold(row);
+    solve_in_place(factor_, x_);
+    // A weight that would be below 0 is held there, one after the other.
+    int worst = -1;
+    for (int row = 0; row < size; ++row) {
+      if (x_[row] < 0 && non_negative[first + row / pairs] && (worst < 0 || x_[row] < x_[worst])) worst = row;
+    }
+    if (worst < 0) break;
+    held_.push_back(worst);
   }
-  return -right.dot(x);
+  if (weights != nullptr) {
+    for (int row = 0; row < size; ++row) (*weights)(row % pairs, first + row / pairs) = x_[row];
+  }
+  return -its.right.dot(x_);
+}
+
+void QuadraticForm::hold(int row) const {
+  factor_.row(row).head(row).setZero();
+  factor_.col(row).tail(factor_.rows() - row).setZero();
+  factor_(row, row) = 1;
+  x_[row] = 0;
 }
 
 using Forms = std::vector<QuadraticForm>;
