@@ -100,10 +100,13 @@ std::shared_ptr<const Taps> fitted_taps(const Device& device, const Profile& pro
 }  // namespace
 
 int most_terms(const Device& device, const std::vector<Material>& materials, const DesignOf& design_of) {
-  int most = 1;
+  std::vector<std::future<TapsDesign>> designs;
+  designs.reserve(materials.size());
   for (const Material& material : materials) {
-    most = std::max(most, with_rank(device, material.profile, design_of(material)).rank);
+    designs.push_back(std::async([&] { return with_rank(device, material.profile, design_of(material)); }));
   }
+  int most = 1;
+  for (auto& design : designs) most = std::max(most, design.get().rank);
   return most;
 }
 

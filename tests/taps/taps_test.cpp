@@ -9,6 +9,7 @@
 #include "dermis/tap_tables.hpp"
 #include "support/catch.hpp"
 #include "support/random.hpp"
+#include "taps/prediction/lattice_waves.hpp"
 #include "taps/tables/surface_weights.hpp"
 #include "taps/tap_budget.hpp"
 
@@ -192,6 +193,23 @@ TEST_CASE("the curves of a term follow the profile", "[taps]") {
         }
       }
     }
+  }
+}
+
+TEST_CASE("evenly spaced frequencies give the responses that others give", "[taps]") {
+  Random random(202);
+  for (const int count : {129, 257, 1025}) {
+    const Eigen::VectorXd u = Eigen::VectorXd::LinSpaced(count, 0, std::acos(-1.0));
+    const dermis::LatticeWaves evenly_spaced(u, true);
+    const dermis::LatticeWaves any(u);
+    std::vector<dermis::Gaussian> gaussians;
+    for (int i = 0; i < 40; ++i) gaussians.push_back({std::exp(random.uniform(-4, 14)), 1});
+    const Eigen::MatrixXd wanted = any.of_gaussians(gaussians, 1);
+    CAPTURE(test_seed(), count);
+    CHECK(wanted.row(0).isOnes(1e-6));
+    CHECK(wanted.maxCoeff() <= 1 + 1e-9);
+    // Values of a recurrence over up to 1.2 periods have as many roundings squared: 6e6 of 1e-16.
+    CHECK((evenly_spaced.of_gaussians(gaussians, 1) - wanted).cwiseAbs().maxCoeff() < 1e-9);
   }
 }
 
