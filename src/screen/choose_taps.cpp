@@ -1,5 +1,3 @@
-#include <algorithm>
-#include <bit>
 #include <cmath>
 #include <future>
 #include <string>
@@ -7,6 +5,7 @@
 
 #include "dermis/error.hpp"
 #include "dermis/plan.hpp"
+#include "opencl/recent.hpp"
 #include "taps/check_design.hpp"
 
 namespace dermis {
@@ -31,11 +30,25 @@ void check_quality(const Options& options) {
 /// The widest kernel to place taps for, px, of few sizes: twice the radius of 99.9 %, for those of ranks 2 and 3 hold
 /// more. A kernel that is wider all the same has the taps of one half as wide.
 int widest_kernel_px(const Profile& profile, double finest_pixel_mm) {
-  constexpr unsigned least_px = 128;
-  constexpr unsigned most_px = TapsDesign{}.widest_px;
   const double radius_px = 2 * profile.half_width(profile.widest_channel(), 0.999) / finest_pixel_mm;
-  return static_cast<int>(radius_px < most_px ? std::max(std::bit_ceil(static_cast<unsigned>(radius_px)), least_px)
-                                              : most_px);
+  for (const int size_px : {64, 96, 128, 192, 256, 384}) {
+    if (radius_px <= size_px) return size_px;
+  }
+  return TapsDesign{}.widest_px;
+}
+
+/// A material that is to have a design of its own, as choose_design sees it.
+struct ChoiceKey {
+  Profile profile;
+  TapsDesign wanted;
+  double pixel_mm;
+  bool operator==(const ChoiceKey&) const = default;
+};
+
+/// choose_design for the plans of one camera after the other, which ask for the same.
+DesignChoice design_for(const ChoiceKey& key) {
+  static Recent<ChoiceKey, DesignChoice> choices(256, [](const DesignChoice&) { return 1; });
+  return choices.get(key, [&] { return choose_design(key.profile, key.wanted, key.pixel_mm); });
 }
 
 /// The designs of the materials that have a tolerance and a size of pixels, by that. Returns those that miss it.
@@ -44,7 +57,7 @@ std::vector<std::size_t> choose_designs(std::vector<Material>& materials) {
   for (std::size_t i = 0; i < materials.size(); ++i) {
     const Material& material = materials[i];
     if (material.taps->tolerance > 0 && material.pixel_mm > 0)
-      choices[i] = std::async([&] { return choose_design(material.profile, *material.taps, material.pixel_mm); });
+      choices[i] = std::async([&] { return design_for({material.profile, *material.taps, material.pixel_mm}); });
   }
   std::vector<std::size_t> missed;
   for (std::size_t i = 0; i < materials.size(); ++i) {

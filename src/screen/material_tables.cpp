@@ -13,14 +13,17 @@ namespace {
 
 /// The number of pairs of a level in which each channel has a weight, from the first pair on.
 std::array<int, 3> channel_pairs(const TapLevel& level, std::size_t terms) {
+  const auto has_weight = [&](std::size_t at, int c) {
+    return std::any_of(level.weights[at].begin(), level.weights[at].end(),
+                       [&](const auto& coefficients) { return coefficients[c] != 0; }) ||
+           std::any_of(level.flat_weights.begin(), level.flat_weights.end(),
+                       [&](const auto& part) { return part[at][c] != 0; });
+  };
   std::array<int, 3> pairs{};
-  for (std::size_t at = terms; at < level.weights.size(); ++at) {
-    for (int c = 0; c < 3; ++c) {
-      bool has_weight = std::any_of(level.weights[at].begin(), level.weights[at].end(),
-                                    [&](const auto& coefficients) { return coefficients[c] != 0; });
-      for (const auto& part : level.flat_weights) has_weight = has_weight || part[at][c] != 0;
-      if (has_weight) pairs[c] = static_cast<int>(at / terms);
-    }
+  for (int c = 0; c < 3; ++c) {
+    std::size_t end = level.weights.size();
+    while (end > terms && !has_weight(end - 1, c)) --end;
+    pairs[c] = static_cast<int>((end - 1) / terms);
   }
   return pairs;
 }
@@ -46,26 +49,28 @@ void append_level(const TapLevel& level, const Taps& taps, double jitter, Materi
                            rotated > 0 ? level.offsets_px[static_cast<std::size_t>(rotated) - 1] : 0});
   tables.offsets_px.insert(tables.offsets_px.end(), level.offsets_px.begin(), level.offsets_px.end());
   for (const auto& [scale, softening, end] : level.nearness) tables.nearness.push_back({scale, softening, end});
+  // Terms that the material lacks weigh nothing: what is added is zero.
   const std::size_t terms = taps.terms.size();
-  for (std::size_t row = 0; row <= level.offsets_px.size(); ++row) {
-    for (std::size_t t = 0; t < terms_per_material; ++t) {
-      params::CubicWeight its{};
-      if (t < terms) {
-        const auto& [a, b, c] = level.weights[row * terms + t];
-        std::copy(a.begin(), a.end(), its.a);
-        std::copy(b.begin(), b.end(), its.b);
-        std::copy(c.begin(), c.end(), its.c);
-      }
-      tables.weights.push_back(its);
+  const std::size_t rows = level.offsets_px.size() + 1;
+  const std::size_t first = tables.weights.size();
+  tables.weights.resize(first + rows * terms_per_material);
+  for (std::size_t row = 0; row < rows; ++row) {
+    for (std::size_t t = 0; t < terms; ++t) {
+      params::CubicWeight& its = tables.weights[first + row * terms_per_material + t];
+      const auto& [a, b, c] = level.weights[row * terms + t];
+      std::copy(a.begin(), a.end(), its.a);
+      std::copy(b.begin(), b.end(), its.b);
+      std::copy(c.begin(), c.end(), its.c);
     }
   }
   static_assert(std::tuple_size_v<decltype(level.flat_weights)> == LEVEL_PARTS);
   for (const auto& weights : level.flat_weights) {
-    for (std::size_t row = 0; row <= level.offsets_px.size(); ++row) {
-      for (std::size_t t = 0; t < terms_per_material; ++t) {
-        params::FlatWeight its{};
-        if (t < terms) std::copy_n(weights[row * terms + t].begin(), 3, its.rgb);
-        tables.flat_weights.push_back(its);
+    const std::size_t first_flat = tables.flat_weights.size();
+    tables.flat_weights.resize(first_flat + rows * terms_per_material);
+    for (std::size_t row = 0; row < rows; ++row) {
+      for (std::size_t t = 0; t < terms; ++t) {
+        std::copy_n(weights[row * terms + t].begin(), 3,
+                    tables.flat_weights[first_flat + row * terms_per_material + t].rgb);
       }
     }
   }
@@ -101,10 +106,13 @@ std::shared_ptr<const Taps> fitted_taps(const Device& device, const Profile& pro
 }  // namespace
 
 int most_terms(const Device& device, const std::vector<Material>& materials, const DesignOf& design_of) {
-  int most = 1;
+  std::vector<std::future<TapsDesign>> designs;
+  designs.reserve(materials.size());
   for (const Material& material : materials) {
-    most = std::max(most, with_rank(device, material.profile, design_of(material)).rank);
+    designs.push_back(std::async([&] { return with_rank(device, material.profile, design_of(material)); }));
   }
+  int most = 1;
+  for (auto& design : designs) most = std::max(most, design.get().rank);
   return most;
 }
 

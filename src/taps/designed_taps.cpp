@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <mutex>
 #include <utility>
 
 #include "taps/model/gaussian_mixture.hpp"
@@ -21,7 +22,9 @@ double share_within_radius(const TapsDesign& design) {
 }
 
 std::shared_ptr<const PowerGrid> grid_of(int period_px) {
-  thread_local std::map<int, std::shared_ptr<const PowerGrid>> grids;
+  static std::map<int, std::shared_ptr<const PowerGrid>> grids;
+  static std::mutex mutex;
+  const std::scoped_lock lock(mutex);  // another thread that wants this one waits for it
   auto& grid = grids[period_px];
   if (!grid) grid = std::make_shared<PowerGrid>(period_px);
   return grid;
@@ -55,11 +58,14 @@ std::vector<double> valid_offsets(std::vector<double> offsets_px, int last_px, F
 }  // namespace
 
 DesignedTaps::DesignedTaps(const Profile& profile, const TapsDesign& design)
-    : profile_(profile), design_(design), model_(make_model(profile, design)) {
+    : profile_(profile), design_(design), widest_(profile.widest_channel()), model_(make_model(profile, design)) {
   for (int c = 0; c < 3; ++c) {
     mixtures_[c] = mixture_of(profile, c);
     radius_mm_ = std::max(radius_mm_, radius_mm(c));
   }
+  // Few taps are better spent nearer than where the last thousandths of the light are.
+  constexpr double share_worth_a_tap = 0.998;
+  worth_mm_ = profile.half_width(widest_, share_worth_a_tap);
 }
 
 double DesignedTaps::radius_mm(int channel) const { return profile_.half_width(channel, share_within_radius(design_)); }
@@ -71,11 +77,13 @@ std::array<MatrixXd, 3> DesignedTaps::run_weights(const TapRuns& runs, double pi
     for (std::size_t t = 0; t < model_.size(); ++t) {
       const TermFunction& f = model_[t].functions[c];
       double outside = 0;
+      double beyond = tail_of(profile_, c, f, runs.runs.front().begin_px() * pixel_mm);
       for (std::size_t i = 0; i < runs.runs.size(); ++i) {
         const TapRun& run = runs.runs[i];
         // The last run also takes what lies beyond the radius.
-        const double beyond = i + 1 == runs.runs.size() ? 0 : tail_of(profile_, c, f, run.end_px() * pixel_mm);
-        double light = tail_of(profile_, c, f, run.begin_px() * pixel_mm) - beyond;
+        const double from_here = beyond;
+        beyond = i + 1 == runs.runs.size() ? 0 : tail_of(profile_, c, f, run.end_px() * pixel_mm);
+        double light = from_here - beyond;
         if (model_[t].normalised) light = std::max(light, 0.0);
         weights[c](static_cast<Index>(i) + 1, static_cast<Index>(t)) = light;
         outside += 2 * light;
@@ -86,11 +94,17 @@ std::array<MatrixXd, 3> DesignedTaps::run_weights(const TapRuns& runs, double pi
   return weights;
 }
 
-std::array<ChannelOnPixels, 3> DesignedTaps::on_pixels(double pixel_mm, int last_px) const {
-  const auto grid = grid_of(period_for(last_px));
-  return {ChannelOnPixels(grid, mixtures_[0], model_, 0, pixel_mm),
-          ChannelOnPixels(grid, mixtures_[1], model_, 1, pixel_mm),
-          ChannelOnPixels(grid, mixtures_[2], model_, 2, pixel_mm)};
+const std::array<ChannelOnPixels, 3>& DesignedTaps::on_pixels(double pixel_mm, int last_px) const {
+  const int period_px = period_for(last_px);
+  if (!latest_->channels || latest_->pixel_mm != pixel_mm || latest_->period_px != period_px) {
+    const auto grid = grid_of(period_px);
+    const auto channel = [&](int c) { return ChannelOnPixels(grid, mixtures_[c], model_, c, pixel_mm); };
+    latest_->channels =
+        std::make_unique<const std::array<ChannelOnPixels, 3>>(std::array{channel(0), channel(1), channel(2)});
+    latest_->pixel_mm = pixel_mm;
+    latest_->period_px = period_px;
+  }
+  return *latest_->channels;
 }
 
 double DesignedTaps::predicted_rel_l2(const PlacedTaps& placed, double pixel_mm) const {
@@ -100,7 +114,7 @@ double DesignedTaps::predicted_rel_l2(const PlacedTaps& placed, double pixel_mm)
     pixel_mm *= 2;
   }
   const int last_px = taps.offsets_px.empty() ? 1 : static_cast<int>(std::ceil(taps.offsets_px.back()));
-  const auto channels = on_pixels(pixel_mm, std::max(last_px, least_reach_px));
+  const auto& channels = on_pixels(pixel_mm, std::max(last_px, least_reach_px));
   std::array<double, 3> errors{};
   std::array<double, 3> truths{};
   for (int c = 0; c < 3; ++c) {
@@ -112,7 +126,7 @@ double DesignedTaps::predicted_rel_l2(const PlacedTaps& placed, double pixel_mm)
 
 double DesignedTaps::model_rel_l2(double pixel_mm) const {
   pixel_mm = std::max(pixel_mm, radius_mm_ / farthest_px);
-  const auto channels = on_pixels(pixel_mm, std::max(static_cast<int>(radius_mm_ / pixel_mm), least_reach_px));
+  const auto& channels = on_pixels(pixel_mm, std::max(static_cast<int>(radius_mm_ / pixel_mm), least_reach_px));
   std::array<double, 3> errors{};
   std::array<double, 3> truths{};
   for (int c = 0; c < 3; ++c) {
@@ -148,9 +162,10 @@ SizedTaps DesignedTaps::at(double pixel_mm, Fetch fetch, Search search, const st
   if (!dense && design_.placement == Placement::optimised && pairs <= most_fitted_pairs) {
     return fitted(pixel_mm, last_px, fetch, search, near_px);
   }
-  const TapRuns runs = dense ? every_pixel(last_px) : make_runs(profile_, design_.placement, px_per_mm, last_px, pairs);
+  const TapRuns runs =
+      dense ? every_pixel(last_px) : make_runs(profile_, widest_, design_.placement, px_per_mm, last_px, pairs);
   SizedTaps taps;
-  taps.placed.offsets_px = offsets_in(profile_, runs, px_per_mm, dense ? Fetch::integer : fetch);
+  taps.placed.offsets_px = offsets_in(profile_, widest_, runs, px_per_mm, dense ? Fetch::integer : fetch);
   taps.placed.weights = run_weights(runs, pixel_mm);
   taps.centre_half_width_px = runs.centre_px + 0.5;
   return taps;
@@ -158,21 +173,18 @@ SizedTaps DesignedTaps::at(double pixel_mm, Fetch fetch, Search search, const st
 
 SizedTaps DesignedTaps::fitted(double pixel_mm, int last_px, Fetch fetch, Search search,
                                const std::vector<double>& near_px) const {
-  // Few taps are better spent nearer than where the last thousandths of the light are.
-  constexpr double share_worth_a_tap = 0.998;
-  const int worth_px =
-      static_cast<int>(std::ceil(profile_.half_width(profile_.widest_channel(), share_worth_a_tap) / pixel_mm - 0.5));
+  const int worth_px = static_cast<int>(std::ceil(worth_mm_ / pixel_mm - 0.5));
   last_px = std::max({1, design_.count / 2, std::min(last_px, worth_px)});
   if (search != Search::everywhere) {
     // The farthest tap is not far from where it was.
     const int near_last_px = static_cast<int>(near_px.back() * 1.25) + 2;
     last_px = std::clamp(near_last_px, design_.count / 2, last_px);
   }
-  const auto channels = on_pixels(pixel_mm, last_px);
+  const auto& channels = on_pixels(pixel_mm, last_px);
   std::vector<double> start_px = near_px;
   if (search == Search::everywhere) {
-    const TapRuns runs = make_runs(profile_, Placement::importance, 1 / pixel_mm, last_px, design_.count / 2);
-    start_px = offsets_in(profile_, runs, 1 / pixel_mm, fetch);
+    const TapRuns runs = make_runs(profile_, widest_, Placement::importance, 1 / pixel_mm, last_px, design_.count / 2);
+    start_px = offsets_in(profile_, widest_, runs, 1 / pixel_mm, fetch);
   }
   start_px = valid_offsets(std::move(start_px), last_px, fetch);
   std::vector<bool> non_negative;
@@ -191,9 +203,8 @@ SizedTaps DesignedTaps::fitted(double pixel_mm, int last_px, Fetch fetch, Search
 
 /// The strip that holds as much of the widest channel as the centre tap weighs, at least a pixel.
 double DesignedTaps::centre_half_width_px(const PlacedTaps& placed, double pixel_mm) const {
-  const int widest = profile_.widest_channel();
-  const double light = std::clamp(placed.weights[widest](0, 0), 0.0, 0.99);
-  const double half_width = profile_.half_width(widest, light) / pixel_mm;
+  const double light = std::clamp(placed.weights[widest_](0, 0), 0.0, 0.99);
+  const double half_width = profile_.half_width(widest_, light) / pixel_mm;
   const double farthest = placed.offsets_px.empty() ? 0.5 : placed.offsets_px.front() - 0.5;
   return std::max(0.5, std::min(half_width, farthest));
 }

@@ -46,13 +46,23 @@ class DesignedTaps {
   std::array<Eigen::MatrixXd, 3> run_weights(const TapRuns& runs, double pixel_mm) const;
   SizedTaps fitted(double pixel_mm, int last_px, Fetch fetch, Search search, const std::vector<double>& near_px) const;
   double centre_half_width_px(const PlacedTaps& placed, double pixel_mm) const;
-  std::array<ChannelOnPixels, 3> on_pixels(double pixel_mm, int last_px) const;
+  const std::array<ChannelOnPixels, 3>& on_pixels(double pixel_mm, int last_px) const;
 
   Profile profile_;
   TapsDesign design_;
+  int widest_;  ///< channel
   std::vector<ModelTerm> model_;
   std::array<std::vector<Gaussian>, 3> mixtures_;
   double radius_mm_ = 0;
+  double worth_mm_ = 0;  ///< fitted taps do not lie farther
+
+  /// The latest channels, which the taps of one size are fitted to, weighed with another count, and judged by.
+  struct Latest {
+    double pixel_mm = 0;
+    int period_px = 0;
+    std::unique_ptr<const std::array<ChannelOnPixels, 3>> channels;
+  };
+  std::shared_ptr<Latest> latest_ = std::make_shared<Latest>();  ///< shared with other counts; for one thread
 };
 
 }  // namespace dermis

@@ -1,6 +1,5 @@
 #include "taps/placement/tap_fit.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -79,6 +78,8 @@ class QuadraticForm {
   /// The two steps of it: one set of equations for all terms if they are changed together, else one for each.
   std::vector<Equations> equations(const std::vector<double>& offsets_px) const;
   double solve(const std::vector<Equations>& equations, const std::vector<bool>& non_negative, MatrixXd* weights) const;
+  /// The least value if all weights might be negative, which is sooner known and never more.
+  double bound(const std::vector<Equations>& equations) const;
   /// Puts another offset of one of the pairs into the equations.
   void move(std::vector<Equations>& equations, const std::vector<double>& offsets_px, std::size_t pair) const;
 
@@ -89,6 +90,10 @@ class QuadraticForm {
   /// Fills the rows of a pair, in the columns of the first `others` pairs.
   void fill(std::vector<Equations>& equations, const std::vector<double>& offsets_px, std::size_t pair,
             std::size_t others) const;
+  /// Puts the equations into factor_ and x_.
+  void begin(const Equations& its) const;
+  /// Takes an unknown out of the equations in factor_ and x_, as 0.
+  void hold(int row) const;
   double product(const Moments& moments, double offset_a, double offset_b) const;
   double target(int term, double offset_px) const;
 
@@ -97,6 +102,9 @@ class QuadraticForm {
   double constant_ = 0;
   std::vector<Moments> quadratic_;  ///< per pair of terms: AxisError::pair_of
   std::vector<Moments> linear_;     ///< per term
+  mutable MatrixXd factor_;         ///< these three are kept by change() for the next time
+  mutable VectorXd x_;
+  mutable std::vector<int> held_;
 };
 
 QuadraticForm::QuadraticForm(const ChannelOnPixels& channel, const Responses& beta, const VectorXd& sums, bool joint,
@@ -150,23 +158,52 @@ double QuadraticForm::product(const Moments& moments, double offset_a, double of
   return sum;
 }
 
-/// Solves equations for weights of which those marked in `non_negative` are not below 0. A weight that would be below
-/// is held at 0, one after the other; `right` is 0 there at the end.
-VectorXd solve_non_negative(MatrixXd& matrix, VectorXd& right, const std::vector<bool>& non_negative) {
-  const auto size = static_cast<int>(right.size());
-  std::vector<bool> held(size, false);
-  for (;;) {
-    VectorXd x = matrix.selfadjointView<Eigen::Lower>().llt().solve(right);
-    int worst = -1;
-    for (int row = 0; row < size; ++row) {
-      if (non_negative[row] && !held[row] && x[row] < 0 && (worst < 0 || x[row] < x[worst])) worst = row;
+/// Makes the lower half of a matrix its Cholesky factor, with the reciprocals of the pivots in the diagonal: 0 where
+/// rounding has left nothing. Eigen's takes several times as long for matrices this small.
+void factorise(MatrixXd& matrix) {
+  constexpr Index panel = 4;  // so many columns are taken from the later ones at once
+  const Index size = matrix.rows();
+  for (Index first = 0; first < size; first += panel) {
+    const Index end = std::min(first + panel, size);
+    for (Index k = first; k < end; ++k) {
+      double* const column = matrix.col(k).data();
+      column[k] = column[k] > 0 ? 1 / std::sqrt(column[k]) : 0;
+      const double over_pivot = column[k];
+      for (Index row = k + 1; row < size; ++row) column[row] *= over_pivot;
+      for (Index j = k + 1; j < end; ++j) {
+        double* const later = matrix.col(j).data();
+        const double factor = column[j];
+        for (Index row = j; row < size; ++row) later[row] -= factor * column[row];
+      }
     }
-    if (worst < 0) return x;
-    held[worst] = true;
-    matrix.row(worst).head(worst).setZero();
-    matrix.col(worst).tail(size - worst).setZero();
-    matrix(worst, worst) = 1;
-    right[worst] = 0;
+    if (end == size) break;
+    const double* const a = matrix.col(first).data();
+    const double *const b = a + size, *const c = b + size, *const d = c + size;
+    for (Index j = end; j < size; ++j) {
+      double* const later = matrix.col(j).data();
+      const double by_a = a[j], by_b = b[j], by_c = c[j], by_d = d[j];
+      for (Index row = j; row < size; ++row) {
+        later[row] -= by_a * a[row] + by_b * b[row] + by_c * c[row] + by_d * d[row];
+      }
+    }
+  }
+}
+
+/// The factor divides x, and its transpose does: the one after the other takes a right side to the solution.
+void divide_by_factor(const MatrixXd& factor, VectorXd& x) {
+  const Index size = x.size();
+  for (Index k = 0; k < size; ++k) {
+    const double* const column = factor.col(k).data();
+    const double its = x[k] * column[k];
+    x[k] = its;
+    for (Index row = k + 1; row < size; ++row) x[row] -= its * column[row];
+  }
+}
+
+void divide_by_transpose(const MatrixXd& factor, VectorXd& x) {
+  for (Index k = x.size() - 1; k >= 0; --k) {
+    const Index later = x.size() - 1 - k;
+    x[k] = (x[k] - factor.col(k).tail(later).dot(x.tail(later))) * factor(k, k);
   }
 }
 
@@ -185,19 +222,20 @@ void QuadraticForm::move(std::vector<Equations>& equations, const std::vector<do
 
 void QuadraticForm::fill(std::vector<Equations>& equations, const std::vector<double>& offsets_px, std::size_t pair,
                          std::size_t others) const {
-  const auto pairs = static_cast<int>(offsets_px.size());
-  for (int first = 0; first < static_cast<int>(equations.size()); ++first) {
-    Equations& its = equations[first];
-    const auto size = static_cast<int>(its.right.size());
-    for (auto row = static_cast<int>(pair); row < size; row += pairs) {
-      const int t = first + row / pairs;
-      its.right[row] = target(t, offsets_px[pair]);
-      for (int start = 0; start < size; start += pairs) {
-        const Moments& moments = quadratic_[AxisError::pair_of(t, first + start / pairs)];
-        for (int i = 0; i < static_cast<int>(others); ++i) {
-          const int column = start + i;
-          its.matrix(std::max(row, column), std::min(row, column)) = product(moments, offsets_px[pair], offsets_px[i]);
-        }
+  const auto pairs = static_cast<Index>(offsets_px.size());
+  const auto place = static_cast<Index>(pair);
+  for (int t = 0; t < terms_; ++t) {
+    Equations& its = equations[joint_ ? 0 : t];
+    const Index row = (joint_ ? t * pairs : 0) + place;
+    its.right[row] = target(t, offsets_px[pair]);
+    for (int other = joint_ ? 0 : t; other <= t; ++other) {
+      const Moments& moments = quadratic_[AxisError::pair_of(t, other)];
+      const Index start = joint_ ? other * pairs : 0;
+      for (Index i = 0; i < static_cast<Index>(others); ++i) {
+        const double value = product(moments, offsets_px[pair], offsets_px[i]);
+        its.matrix(std::max(row, start + i), std::min(row, start + i)) = value;
+        // The terms the other way round.
+        if (other < t) its.matrix(row - place + i, start + place) = value;
       }
     }
   }
@@ -217,18 +255,51 @@ double QuadraticForm::change(const Equations& its, int first, const std::vector<
                              MatrixXd* weights) const {
   const auto size = static_cast<int>(its.right.size());
   const int pairs = size / (joint_ ? terms_ : 1);
-  std::vector<bool> not_below(size);
-  for (int row = 0; row < size; ++row) not_below[row] = non_negative[first + row / pairs];
-  MatrixXd matrix = its.matrix;
-  VectorXd right = its.right;
+  held_.clear();
+  for (;;) {
+    begin(its);
+    for (const int row : held_) hold(row);
+    factorise(factor_);
+    divide_by_factor(factor_, x_);
+    divide_by_transpose(factor_, x_);
+    // A weight that would be below 0 is held there, one after the other.
+    int worst = -1;
+    for (int row = 0; row < size; ++row) {
+      if (x_[row] < 0 && non_negative[first + row / pairs] && (worst < 0 || x_[row] < x_[worst])) worst = row;
+    }
+    if (worst < 0) break;
+    held_.push_back(worst);
+  }
+  if (weights != nullptr) {
+    for (int row = 0; row < size; ++row) (*weights)(row % pairs, first + row / pairs) = x_[row];
+  }
+  return -its.right.dot(x_);
+}
+
+double QuadraticForm::bound(const std::vector<Equations>& equations) const {
+  double value = constant_;
+  for (const Equations& its : equations) {
+    begin(its);
+    factorise(factor_);
+    divide_by_factor(factor_, x_);
+    value -= x_.squaredNorm();
+  }
+  return value;
+}
+
+void QuadraticForm::begin(const Equations& its) const {
   // A term of no or little scale must not grow without bound.
   constexpr double ridge = 1e-11;
-  matrix.diagonal().array() += ridge * matrix.diagonal().maxCoeff() + std::numeric_limits<double>::min();
-  const VectorXd x = solve_non_negative(matrix, right, not_below);
-  if (weights != nullptr) {
-    for (int row = 0; row < size; ++row) (*weights)(row % pairs, first + row / pairs) = x[row];
-  }
-  return -right.dot(x);
+  factor_ = its.matrix;
+  factor_.diagonal().array() += ridge * its.matrix.diagonal().maxCoeff() + std::numeric_limits<double>::min();
+  x_ = its.right;
+}
+
+void QuadraticForm::hold(int row) const {
+  factor_.row(row).head(row).setZero();
+  factor_.col(row).tail(factor_.rows() - row).setZero();
+  factor_(row, row) = 1;
+  x_[row] = 0;
 }
 
 using Forms = std::vector<QuadraticForm>;
@@ -259,11 +330,12 @@ class Positions {
   double error() const { return error_; }
   const std::vector<double>& offsets_px() const { return offsets_px_; }
 
-  /// Moves each tap by a step to either side where that helps. False if it helped nowhere.
-  bool move_each(double step_px) {
-    bool moved = false;
-    for (std::size_t i = 0; i < offsets_px_.size(); ++i) moved |= move(i, -step_px) || move(i, step_px);
-    return moved;
+  /// Moves one tap after the other by a step to either side where that helps, until it helps nowhere.
+  void move_each(double step_px) {
+    std::size_t left = offsets_px_.size();  // taps that have not been tried since the last move
+    for (std::size_t i = 0; left > 0; i = (i + 1) % offsets_px_.size()) {
+      left = move(i, -step_px) || move(i, step_px) ? offsets_px_.size() : left - 1;
+    }
   }
 
  private:
@@ -276,13 +348,20 @@ class Positions {
     if (after < low || after > high) return false;
     offsets_px_[i] = after;
     double error_after = 0;
+    const auto is_worthwhile = [&] { return error_after < error_ * worthwhile; };
     // No channel has an error below 0.
-    for (std::size_t c = 0; c < forms_.size() && error_after < error_ * worthwhile; ++c) {
+    for (std::size_t c = 0; c < forms_.size() && is_worthwhile(); ++c) {
       moved_equations_[c] = equations_[c];
       forms_[c].move(moved_equations_[c], offsets_px_, i);
-      error_after += forms_[c].solve(moved_equations_[c], non_negative_, nullptr);
+      error_after += forms_[c].bound(moved_equations_[c]);
     }
-    if (error_after < error_ * worthwhile) {
+    if (is_worthwhile()) {
+      error_after = 0;
+      for (std::size_t c = 0; c < forms_.size(); ++c) {
+        error_after += forms_[c].solve(moved_equations_[c], non_negative_, nullptr);
+      }
+    }
+    if (is_worthwhile()) {
       error_ = error_after;
       std::swap(equations_, moved_equations_);
       return true;
@@ -307,9 +386,7 @@ double search(const Forms& forms, std::vector<double>& offsets_px, int farthest_
   constexpr double least_gap_px = 0.25;
   Positions positions(forms, non_negative, farthest_px, last_step_px >= 1 ? 1 : least_gap_px, offsets_px);
   const int halvings = static_cast<int>(std::log2(first_step_px / last_step_px));
-  for (int i = 0; i <= halvings; ++i) {
-    while (positions.move_each(std::ldexp(first_step_px, -i))) continue;
-  }
+  for (int i = 0; i <= halvings; ++i) positions.move_each(std::ldexp(first_step_px, -i));
   offsets_px = positions.offsets_px();
   return positions.error();
 }

@@ -9,8 +9,7 @@ namespace {
 
 /// Splits the pixels beyond the centre into at most `pairs` runs of equal light in the widest channel. A run that would
 /// be narrower than a pixel takes one pixel, and the others share what is left.
-TapRuns equal_shares(const Profile& profile, double px_per_mm, int last_px, int pairs) {
-  const int widest = profile.widest_channel();
+TapRuns equal_shares(const Profile& profile, int widest, double px_per_mm, int last_px, int pairs) {
   // The centre is more than a pixel only where the taps are so far apart that the centre pixel holds less than half the
   // light of what every other tap stands for.
   const double centre_share = 1.0 / (2 * pairs + 1);
@@ -91,7 +90,7 @@ TapRuns every_pixel(int last_px) {
   return result;
 }
 
-TapRuns make_runs(const Profile& profile, Placement placement, double px_per_mm, int last_px, int pairs) {
+TapRuns make_runs(const Profile& profile, int widest, Placement placement, double px_per_mm, int last_px, int pairs) {
   switch (placement) {
     case Placement::uniform:
       return nearest_to_powers(last_px, pairs, 1);
@@ -101,11 +100,10 @@ TapRuns make_runs(const Profile& profile, Placement placement, double px_per_mm,
     case Placement::optimised:
       break;
   }
-  return equal_shares(profile, px_per_mm, last_px, pairs);
+  return equal_shares(profile, widest, px_per_mm, last_px, pairs);
 }
 
-std::vector<double> offsets_in(const Profile& profile, const TapRuns& runs, double px_per_mm, Fetch fetch) {
-  const int widest = profile.widest_channel();
+std::vector<double> offsets_in(const Profile& profile, int widest, const TapRuns& runs, double px_per_mm, Fetch fetch) {
   std::vector<double> offsets_px;
   double owed = 0;
   for (const TapRun& run : runs.runs) {

@@ -25,11 +25,12 @@ struct TapRuns {
 /// One run per pixel up to last_px.
 TapRuns every_pixel(int last_px);
 
-/// At most `pairs` runs up to last_px. Placement::optimised starts as Placement::importance does.
-TapRuns make_runs(const Profile& profile, Placement placement, double px_per_mm, int last_px, int pairs);
+/// At most `pairs` runs up to last_px; `widest` is the widest channel. Placement::optimised starts as
+/// Placement::importance does.
+TapRuns make_runs(const Profile& profile, int widest, Placement placement, double px_per_mm, int last_px, int pairs);
 
 /// The offsets of the taps in their runs: the centres of the widest channel's light; for whole pixels the one of the
 /// two pixels beside it that keeps the second moment of the kernel, with the error of earlier runs carried along.
-std::vector<double> offsets_in(const Profile& profile, const TapRuns& runs, double px_per_mm, Fetch fetch);
+std::vector<double> offsets_in(const Profile& profile, int widest, const TapRuns& runs, double px_per_mm, Fetch fetch);
 
 }  // namespace dermis

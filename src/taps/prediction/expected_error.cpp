@@ -1,8 +1,10 @@
 #include "taps/prediction/expected_error.hpp"
 
+#include <Eigen/SparseCore>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <unsupported/Eigen/FFT>
 #include <utility>
 
 namespace dermis {
@@ -13,10 +15,11 @@ using Eigen::VectorXd;
 
 /// Sums over j of x[j] cos(2 pi j k / period) for k = 0..period/2, j running over the whole period of an even x.
 VectorXd PowerGrid::even_transform(const VectorXd& half) const {
+  thread_local Eigen::FFT<double> fft;  // keeps its factors
   std::vector<double> x(period_px);
   for (int j = 0; j < period_px; ++j) x[j] = half[std::min(j, period_px - j)];
   std::vector<std::complex<double>> spectrum;
-  fft_.fwd(spectrum, x);
+  fft.fwd(spectrum, x);
   VectorXd result(period_px / 2 + 1);
   for (int k = 0; k < result.size(); ++k) result[k] = spectrum[k].real();
   return result;
@@ -27,7 +30,7 @@ PowerGrid::PowerGrid(int period)
       coarse(coarse_frequencies()),
       fine(fine_frequencies(period)),
       coarse_waves(coarse.u),
-      fine_waves(fine.u),
+      fine_waves(fine.u, true),
       power(coarse.size(), fine.size()),
       cosines_(VectorXd::LinSpaced(period, 0, 2 * std::numbers::pi * (period - 1) / period).array().cos()),
       below_(fine.size()),
@@ -44,6 +47,9 @@ PowerGrid::PowerGrid(int period)
     share_of_next_[j] =
         std::clamp(below == 0 ? fine.u[j] / high : std::log(fine.u[j] / low) / std::log(high / low), 0.0, 1.0);
   }
+  const MatrixXd shares = to_fine(MatrixXd::Identity(coarse.size(), coarse.size()));
+  moments_of_coarse_.resize(coarse.size(), fine.size());
+  for (Index i = 0; i < coarse.size(); ++i) moments_of_coarse_.row(i) = moments(shares.col(i)).transpose();
 }
 
 VectorXd PowerGrid::response(const VectorXd& row) const {
@@ -91,28 +97,44 @@ MatrixXd PowerGrid::to_fine(const MatrixXd& at_coarse) const {
   return result;
 }
 
-const MatrixXd& PowerGrid::moments_of_coarse() const {
-  if (moments_of_coarse_.size() > 0) return moments_of_coarse_;
-  const MatrixXd shares = to_fine(MatrixXd::Identity(coarse.size(), coarse.size()));
-  moments_of_coarse_.resize(coarse.size(), fine.size());
-  for (Index i = 0; i < coarse.size(); ++i) moments_of_coarse_.row(i) = moments(shares.col(i)).transpose();
-  return moments_of_coarse_;
-}
+namespace {
+
+/// The Gaussians of all terms in one channel, each width once, with the weight that each term has of them.
+struct GaussiansOfTerms {
+  std::vector<Gaussian> gaussians;
+  MatrixXd weights;  ///< by Gaussian and term
+
+  GaussiansOfTerms(const std::vector<ModelTerm>& model, int channel) {
+    std::vector<Eigen::Triplet<double>> entries;
+    for (Index t = 0; t < std::ssize(model); ++t) {
+      for (const Gaussian& its : model[t].functions[channel].gaussians) {
+        const auto same = [&](const Gaussian& other) { return other.variance_mm2 == its.variance_mm2; };
+        const Index place = std::find_if(gaussians.begin(), gaussians.end(), same) - gaussians.begin();
+        if (place == std::ssize(gaussians)) gaussians.push_back(its);
+        entries.emplace_back(place, t, its.weight);
+      }
+    }
+    weights = MatrixXd::Zero(std::ssize(gaussians), std::ssize(model));
+    for (const auto& entry : entries) weights(entry.row(), entry.col()) += entry.value();
+  }
+};
+
+}  // namespace
 
 ChannelOnPixels::ChannelOnPixels(std::shared_ptr<const PowerGrid> grid, const std::vector<Gaussian>& mixture,
                                  const std::vector<ModelTerm>& model, int channel, double pixel_mm)
     : grid_(std::move(grid)), scale_(model.size()) {
   VectorXd weights(mixture.size());
   for (std::size_t k = 0; k < mixture.size(); ++k) weights[static_cast<Index>(k)] = mixture[k].weight;
+  const GaussiansOfTerms of_terms(model, channel);
   const auto responses = [&](const LatticeWaves& waves, MatrixXd& of_mixture, Responses& of_model) {
     of_mixture = waves.of_gaussians(mixture, pixel_mm);
+    const VectorXd marginal = of_mixture * weights;
+    const MatrixXd of_gaussians = waves.of_gaussians(of_terms.gaussians, pixel_mm);
     of_model.resize(of_mixture.rows(), scale_.size());
     for (Index t = 0; t < scale_.size(); ++t) {
-      const TermFunction& f = model[t].functions[channel];
-      of_model.col(t) = f.marginal_share * (of_mixture * weights);
-      for (const Gaussian& gaussian : f.gaussians) {
-        of_model.col(t) += gaussian.weight * waves.of_gaussian(std::sqrt(gaussian.variance_mm2) / pixel_mm);
-      }
+      of_model.col(t) = model[t].functions[channel].marginal_share * marginal;
+      of_model.col(t).noalias() += of_gaussians * of_terms.weights.col(t);
     }
   };
   for (Index t = 0; t < scale_.size(); ++t) scale_[t] = model[t].scale[channel];
@@ -120,10 +142,24 @@ ChannelOnPixels::ChannelOnPixels(std::shared_ptr<const PowerGrid> grid, const st
   MatrixXd mixture_at_fine;
   responses(grid_->coarse_waves, mixture_at_coarse, at_coarse_);
   responses(grid_->fine_waves, mixture_at_fine, at_fine_);
+  set_truth(mixture_at_coarse * weights.asDiagonal(), mixture_at_fine);
+}
+
+void ChannelOnPixels::set_truth(const MatrixXd& at_coarse, const MatrixXd& at_fine) {
+  constexpr Index block = 32;
+  weighted_truth_.resize(at_coarse.rows(), at_fine.rows());
+  squared_truth_ = VectorXd::Zero(at_coarse.rows());
   MatrixXd truth;
-  truth.noalias() = mixture_at_coarse * weights.asDiagonal() * mixture_at_fine.transpose();
-  weighted_truth_ = grid_->power.cwiseProduct(truth);
-  squared_truth_ = weighted_truth_.cwiseProduct(truth).rowwise().sum();
+  Index count = at_fine.cols();
+  for (Index first = 0; first < at_fine.rows(); first += block) {
+    const Index size = std::min(block, at_fine.rows() - first);
+    // The Gaussians ascend in width, and of wide ones nothing is left at high frequencies.
+    while (count > 1 && at_fine.col(count - 1).segment(first, size).isZero(0)) --count;
+    truth.noalias() = at_coarse.leftCols(count) * at_fine.block(first, 0, size, count).transpose();
+    auto weighted = weighted_truth_.middleCols(first, size);
+    weighted = grid_->power.middleCols(first, size).cwiseProduct(truth);
+    squared_truth_ += weighted.cwiseProduct(truth).rowwise().sum();
+  }
 }
 
 AxisError ChannelOnPixels::axis_error(const Responses& beta) const {

@@ -4,7 +4,6 @@
 #include <Eigen/Core>
 #include <array>
 #include <memory>
-#include <unsupported/Eigen/FFT>
 #include <vector>
 
 #include "taps/model/separable_model.hpp"
@@ -13,7 +12,7 @@
 
 namespace dermis {
 
-/// Frequencies along both axes of a lattice of pixels that repeats, and the power of images on them. For one thread.
+/// Frequencies along both axes of a lattice of pixels that repeats, and the power of images on them.
 struct PowerGrid {
   explicit PowerGrid(int period_px);
 
@@ -28,7 +27,7 @@ struct PowerGrid {
   /// Values at the coarse frequencies, taken to the fine ones linearly in the logarithm of frequency.
   Eigen::MatrixXd to_fine(const Eigen::MatrixXd& at_coarse) const;
   /// Column k has what each of the coarse values adds to moment k of the fine ones.
-  const Eigen::MatrixXd& moments_of_coarse() const;
+  const Eigen::MatrixXd& moments_of_coarse() const { return moments_of_coarse_; }
 
   int period_px;
   Frequencies coarse;
@@ -40,11 +39,10 @@ struct PowerGrid {
  private:
   Eigen::VectorXd even_transform(const Eigen::VectorXd& half) const;
 
-  mutable Eigen::FFT<double> fft_;             ///< keeps its factors
-  mutable Eigen::MatrixXd moments_of_coarse_;  ///< made when first asked for
-  Eigen::VectorXd cosines_;                    ///< cos(2 pi j / period), j = 0..period-1
-  std::vector<int> below_;                     ///< coarse frequency below each fine one
-  Eigen::VectorXd share_of_next_;              ///< weight of the coarse frequency above it
+  Eigen::VectorXd cosines_;        ///< cos(2 pi j / period), j = 0..period-1
+  std::vector<int> below_;         ///< coarse frequency below each fine one
+  Eigen::VectorXd share_of_next_;  ///< weight of the coarse frequency above it
+  Eigen::MatrixXd moments_of_coarse_;
 };
 
 /// Responses along one axis of the terms of one channel, one per column.
@@ -81,6 +79,9 @@ class ChannelOnPixels {
   double squared_error(const Responses& responses) const;
 
  private:
+  /// The truth is the product of the mixture's Gaussians along both axes, weighted along one.
+  void set_truth(const Eigen::MatrixXd& at_coarse, const Eigen::MatrixXd& at_fine);
+
   std::shared_ptr<const PowerGrid> grid_;
   Eigen::VectorXd scale_;
   Eigen::MatrixXd weighted_truth_;  ///< spectrum of the profile on pixels, coarse by fine, times the power

@@ -17,8 +17,11 @@ constexpr double largest_exponent = 40;  // e^-40 is below the rounding of 1
 
 }  // namespace
 
-LatticeWaves::LatticeWaves(const Eigen::VectorXd& u)
-    : cosines_(u.size(), farthest_px + 1), squared_images_(u.size(), 3), pixel_responses_(u.size(), 3) {
+LatticeWaves::LatticeWaves(const Eigen::VectorXd& u, bool evenly_spaced)
+    : evenly_spaced_(evenly_spaced),
+      cosines_(u.size(), farthest_px + 1),
+      squared_images_(u.size(), 3),
+      pixel_responses_(u.size(), 3) {
   for (int i = 0; i <= farthest_px; ++i) cosines_.col(i) = (u.array() * i).cos();
   for (int image = -1; image <= 1; ++image) {
     const Eigen::VectorXd v = u.array() + 2 * std::numbers::pi * image;
@@ -27,21 +30,32 @@ LatticeWaves::LatticeWaves(const Eigen::VectorXd& u)
   }
 }
 
-Eigen::VectorXd LatticeWaves::of_gaussian(double sigma_px) const {
+void LatticeWaves::respond(double sigma_px, Column response) const {
   if (sigma_px < narrow_px) {
+    constexpr double negligible = 1e-18;
     Eigen::VectorXd light = Eigen::VectorXd::Zero(farthest_px + 1);
     double beyond = 0.5;  // of the pixel before
-    for (int i = 0; i <= farthest_px && beyond > 0; ++i) {
-      const double tail = std::erfc((i + 0.5) / (sigma_px * std::numbers::sqrt2)) / 2;
-      light[i] = 2 * (beyond - tail);
+    int pixels = 0;
+    for (; pixels <= farthest_px && beyond > negligible; ++pixels) {
+      const double tail = std::erfc((pixels + 0.5) / (sigma_px * std::numbers::sqrt2)) / 2;
+      light[pixels] = 2 * (beyond - tail);
       beyond = tail;
     }
-    return cosines_ * light;
+    response.noalias() = cosines_.leftCols(pixels) * light.head(pixels);
+    return;
   }
+  response.setZero();
+  if (evenly_spaced_) {
+    add_evenly_spaced_images(sigma_px, response);
+  } else {
+    add_images(sigma_px, response);
+  }
+}
+
+void LatticeWaves::add_images(double sigma_px, Column response) const {
   // Frequencies ascend, and so do those of the images, but for the sign of the first image's.
   const double largest_square = 2 * largest_exponent / (sigma_px * sigma_px);
-  const Eigen::Index count = cosines_.rows();
-  Eigen::VectorXd response = Eigen::VectorXd::Zero(count);
+  const Eigen::Index count = response.size();
   for (int image = 0; image < 3; ++image) {
     const double* const squares = squared_images_.col(image).data();
     const bool falls = image == 0;
@@ -53,13 +67,42 @@ Eigen::VectorXd LatticeWaves::of_gaussian(double sigma_px) const {
         (-sigma_px * sigma_px / 2 * squared_images_.col(image).segment(first, last - first).array()).exp() *
         pixel_responses_.col(image).segment(first, last - first).array();
   }
-  return response;
+}
+
+void LatticeWaves::add_evenly_spaced_images(double sigma_px, Column response) const {
+  const Eigen::Index count = response.size();
+  const Eigen::Index period = 2 * (count - 1);
+  const double step = sigma_px * 2 * std::numbers::pi / static_cast<double>(period);
+  // exp(-(step m)^2 / 2) for m = 0, 1, ..., four at a time, each from the one four before it. Rounding grows with m^2,
+  // to 1e-9 of the value at the most.
+  constexpr int lanes = 4;
+  const auto wanted = std::min(static_cast<Eigen::Index>(std::sqrt(2 * largest_exponent) / step) + 1, period + count);
+  Eigen::VectorXd gaussian(wanted + lanes);
+  Eigen::Array4d value, ratio;
+  for (int lane = 0; lane < lanes; ++lane) {
+    value[lane] = std::exp(-step * step / 2 * lane * lane);
+    ratio[lane] = std::exp(-step * step * lanes * (lane + lanes / 2.0));
+  }
+  const double ratio_of_ratios = std::exp(-step * step * lanes * lanes);
+  for (Eigen::Index m = 0; m < wanted; m += lanes) {
+    gaussian.segment<lanes>(m) = value;
+    value *= ratio;
+    ratio *= ratio_of_ratios;
+  }
+  // The frequency of image 0 is |m - period|, those of the others m and m + period, in steps.
+  const Eigen::Index own = std::min(wanted, count);
+  response.head(own).array() += gaussian.head(own).array() * pixel_responses_.col(1).head(own).array();
+  const Eigen::Index before = std::clamp<Eigen::Index>(wanted - period / 2, 0, count);
+  response.tail(before).array() +=
+      gaussian.segment(period / 2, before).reverse().array() * pixel_responses_.col(0).tail(before).array();
+  const Eigen::Index after = std::clamp<Eigen::Index>(wanted - period, 0, count);
+  response.head(after).array() += gaussian.segment(period, after).array() * pixel_responses_.col(2).head(after).array();
 }
 
 Eigen::MatrixXd LatticeWaves::of_gaussians(const std::vector<Gaussian>& gaussians, double pixel_mm) const {
   Eigen::MatrixXd responses(cosines_.rows(), gaussians.size());
   for (std::size_t k = 0; k < gaussians.size(); ++k) {
-    responses.col(static_cast<Eigen::Index>(k)) = of_gaussian(std::sqrt(gaussians[k].variance_mm2) / pixel_mm);
+    respond(std::sqrt(gaussians[k].variance_mm2) / pixel_mm, responses.col(static_cast<Eigen::Index>(k)));
   }
   return responses;
 }

@@ -13,9 +13,28 @@ namespace {
 constexpr std::size_t node_count = 24;
 using Values = std::array<double, node_count>;
 
+/// What is tried as softening, as a multiple of x = 1: from least to most in steps of equal ratio of 1 + softening.
+constexpr std::size_t softening_count = 14;
+
+const std::array<double, softening_count>& softenings() {
+  static const auto all = [] {
+    constexpr double least = 0.05;
+    constexpr double most = 15;
+    std::array<double, softening_count> result;
+    for (std::size_t i = 0; i < softening_count; ++i) {
+      const double share = static_cast<double>(i) / (softening_count - 1);
+      result[i] = (1 + least) * std::pow((1 + most) / (1 + least), share) - 1;
+    }
+    return result;
+  }();
+  return all;
+}
+
 struct Nodes {
   Values x;
+  Values root;  ///< of x
   Values importance;
+  std::array<Values, softening_count> nearness;  ///< 1 / (x + softening)
 };
 
 /// No distance is much shorter than on the plane, but the length of a pixel that its material covers in part is.
@@ -28,16 +47,19 @@ Nodes make_nodes(bool of_lengths) {
   for (std::size_t i = 0; i < node_count; ++i) {
     const double step = static_cast<double>(i - shorter.size()) / (node_count - shorter.size() - 1);
     nodes.x[i] = i < shorter.size() ? shorter[i] : first * std::pow(last / first, step);
+    nodes.root[i] = std::sqrt(nodes.x[i]);
     nodes.importance[i] = i < shorter.size() && !of_lengths ? 0 : std::pow(std::max(nodes.x[i], 1.0), -fading);
+    for (std::size_t s = 0; s < softening_count; ++s) nodes.nearness[s][i] = 1 / (nodes.x[i] + softenings()[s]);
   }
   return nodes;
 }
 
-double product(const Values& a, const Values& b, const Values& importance) {
-  double sum = 0;
-  for (std::size_t i = 0; i < node_count; ++i) sum += importance[i] * a[i] * b[i];
-  return sum;
-}
+/// The functions that are fitted, each of one term and channel of a tap.
+struct Functions {
+  std::size_t count;
+  std::vector<double> y;    ///< at the nodes, node by node
+  std::vector<double> y_1;  ///< at x = 1
+};
 
 using Coefficients = std::array<double, 3>;
 
@@ -45,23 +67,31 @@ using Coefficients = std::array<double, 3>;
 /// x_end on.
 class CubicFit {
  public:
-  CubicFit(const Nodes& nodes, double softening, double x_end) : importance_(nodes.importance), softening_(softening) {
-    const double at_end = 1 / (x_end + softening);
-    scale_ = 1 / (1 / (1 + softening) - at_end);
+  CubicFit(const Nodes& nodes, std::size_t number, double x_end)
+      : importance_(nodes.importance), softening_(softenings()[number]) {
+    const double at_end = 1 / (x_end + softening_);
+    scale_ = 1 / (1 / (1 + softening_) - at_end);
     end_ = at_end * scale_;
     for (std::size_t i = 0; i < node_count; ++i) {
-      const double t = std::max(scale_ / (nodes.x[i] + softening) - end_, 0.0);
-      linear_[i] = t;
-      square_[i] = t * t;
+      linear_[i] = std::max(scale_ * nodes.nearness[number][i] - end_, 0.0);
       // By A + B + C = y(1), what is left to fit are the multiples B and C of these.
-      square_less_[i] = t * t - t;
-      cube_less_[i] = t * t * t - t;
-      steep_[i] = t * t * t - t * t;
+      square_less_[i] = linear_[i] * linear_[i] - linear_[i];
+      cube_less_[i] = linear_[i] * linear_[i] * linear_[i] - linear_[i];
     }
-    bb_ = product(square_less_, square_less_, importance_);
-    bc_ = product(square_less_, cube_less_, importance_);
-    cc_ = product(cube_less_, cube_less_, importance_);
-    ss_ = product(steep_, steep_, importance_);
+    // All sums in one loop, so that none waits for another.
+    for (std::size_t i = 0; i < node_count; ++i) {
+      const double steep = cube_less_[i] - square_less_[i];
+      const double linear = importance_[i] * linear_[i];
+      const double square_less = importance_[i] * square_less_[i];
+      ll_ += linear * linear_[i];
+      bl_ += linear * square_less_[i];
+      cl_ += linear * cube_less_[i];
+      bb_ += square_less * square_less_[i];
+      bc_ += square_less * cube_less_[i];
+      cc_ += importance_[i] * cube_less_[i] * cube_less_[i];
+      ss_ += importance_[i] * steep * steep;
+      sq_ += importance_[i] * steep * (linear_[i] * linear_[i]);
+    }
   }
 
   /// For x in units of `unit`.
@@ -69,32 +99,48 @@ class CubicFit {
     return {static_cast<float>(scale_ * unit), static_cast<float>(softening_ * unit), static_cast<float>(end_)};
   }
 
-  /// The best fit to the values y at the nodes; y_1 is the one at x = 1.
-  Coefficients cubic(const Values& y, double y_1) const {
-    Values rest;
-    for (std::size_t i = 0; i < node_count; ++i) rest[i] = y[i] - y_1 * linear_[i];
-    const double b = product(square_less_, rest, importance_);
-    const double c = product(cube_less_, rest, importance_);
+  /// A function's values at the nodes times t, t^2 - t and t^3 - t, which is all that a fit needs of them.
+  struct Moments {
+    double y_1, linear, square_less, cube_less;
+  };
+
+  void append_moments(const Functions& functions, std::vector<Moments>& moments) const {
+    const std::size_t first = moments.size();
+    for (const double y_1 : functions.y_1) moments.push_back({y_1, 0, 0, 0});
+    const double* y = functions.y.data();
+    for (std::size_t i = 0; i < node_count; ++i) {
+      const double linear = importance_[i] * linear_[i];
+      const double square_less = importance_[i] * square_less_[i];
+      const double cube_less = importance_[i] * cube_less_[i];
+      for (std::size_t f = 0; f < functions.count; ++f, ++y) {
+        moments[first + f].linear += linear * *y;
+        moments[first + f].square_less += square_less * *y;
+        moments[first + f].cube_less += cube_less * *y;
+      }
+    }
+  }
+
+  /// The best fit.
+  Coefficients cubic(const Moments& y) const {
+    const double b = y.square_less - y.y_1 * bl_;
+    const double c = y.cube_less - y.y_1 * cl_;
     const double determinant = bb_ * cc_ - bc_ * bc_;
     const double b_best = (cc_ * b - bc_ * c) / determinant;
     const double c_best = (bb_ * c - bc_ * b) / determinant;
-    return {y_1 - b_best - c_best, b_best, c_best};
+    return {y.y_1 - b_best - c_best, b_best, c_best};
   }
 
   /// The best fit without A, which falls faster far away.
-  Coefficients steep(const Values& y, double y_1) const {
-    Values rest;
-    for (std::size_t i = 0; i < node_count; ++i) rest[i] = y[i] - y_1 * square_[i];
-    const double c_best = product(steep_, rest, importance_) / ss_;
-    return {0, y_1 - c_best, c_best};
+  Coefficients steep(const Moments& y) const {
+    const double c_best = (y.cube_less - y.square_less - y.y_1 * sq_) / ss_;
+    return {0, y.y_1 - c_best, c_best};
   }
 
-  double squared_error(const Values& y, const Coefficients& its) const {
-    Values off;
-    for (std::size_t i = 0; i < node_count; ++i) {
-      off[i] = linear_[i] * (its[0] + linear_[i] * (its[1] + linear_[i] * its[2])) - y[i];
-    }
-    return product(off, off, importance_);
+  /// The squared error of a fit that is exact at x = 1, less the square of the function, which no fit changes.
+  double squared_error(const Moments& y, const Coefficients& its) const {
+    const auto [a, b, c] = its;
+    return y.y_1 * (y.y_1 * ll_ + 2 * (b * bl_ + c * cl_ - y.linear)) + b * (b * bb_ - 2 * y.square_less) +
+           c * (c * cc_ + 2 * (b * bc_ - y.cube_less));
   }
 
   /// Whether A + t (B + t C) is nowhere negative, from far away to no distance at all.
@@ -109,36 +155,33 @@ class CubicFit {
  private:
   const Values& importance_;
   double softening_, scale_, end_;
-  Values linear_, square_, square_less_, cube_less_, steep_;
-  double bb_, bc_, cc_, ss_;
-};
-
-/// A function that is fitted: of one term and channel of a tap.
-struct Function {
-  Values y;
-  double y_1;
+  Values linear_, square_less_, cube_less_;
+  /// Sums over the nodes of products of t (l), t^2 - t (b), t^3 - t (c), t^3 - t^2 (s) and t^2 (q).
+  double ll_ = 0, bl_ = 0, cl_ = 0, bb_ = 0, bc_ = 0, cc_ = 0, ss_ = 0, sq_ = 0;
 };
 
 /// A weight of a mean, which is nowhere negative.
-Coefficients fit_mean(const CubicFit& fit, const Function& its) {
-  for (const Coefficients& candidate : {fit.cubic(its.y, its.y_1), fit.steep(its.y, its.y_1)}) {
-    if (fit.is_not_negative(candidate)) return candidate;
-  }
+Coefficients fit_mean(const CubicFit& fit, const CubicFit::Moments& its) {
+  if (const Coefficients cubic = fit.cubic(its); fit.is_not_negative(cubic)) return cubic;
+  if (const Coefficients steep = fit.steep(its); fit.is_not_negative(steep)) return steep;
   return {0, 0, its.y_1};
 }
 
 /// A weight of a difference. The mean divides by the weights of the first term where there is much surface far away,
 /// and the difference is to grow no more than these: it has at most so many times their weight at any distance.
-Coefficients fit_difference(const CubicFit& fit, const Function& its, const Coefficients& of_first, double first_1) {
+Coefficients fit_difference(const CubicFit& fit, const CubicFit::Moments& its, const Coefficients& of_first,
+                            double first_1) {
   constexpr double most = 16;
-  for (const Coefficients& candidate : {fit.cubic(its.y, its.y_1), fit.steep(its.y, its.y_1)}) {
+  const auto is_within = [&](const Coefficients& candidate) {
     Coefficients below, above;
     for (std::size_t i = 0; i < 3; ++i) {
       below[i] = most * of_first[i] - candidate[i];
       above[i] = most * of_first[i] + candidate[i];
     }
-    if (fit.is_not_negative(below) && fit.is_not_negative(above)) return candidate;
-  }
+    return fit.is_not_negative(below) && fit.is_not_negative(above);
+  };
+  if (const Coefficients cubic = fit.cubic(its); is_within(cubic)) return cubic;
+  if (const Coefficients steep = fit.steep(its); is_within(steep)) return steep;
   Coefficients like_first{};
   if (first_1 > 0) {
     for (std::size_t i = 0; i < 3; ++i) like_first[i] = its.y_1 / first_1 * of_first[i];
@@ -147,28 +190,27 @@ Coefficients fit_difference(const CubicFit& fit, const Function& its, const Coef
 }
 
 /// Appends the fit with the best softening, which all functions share. `unit` is what x = 1 stands for, mm or mm^2.
-void append_best(const Nodes& nodes, const std::vector<Function>& functions, const std::vector<TermCurves>& terms,
-                 bool is_centre, double x_end, double unit, double factor, CurvedWeights& result) {
-  constexpr int count = 14;
-  constexpr double least = 0.05;
-  constexpr double most = 15;
+void append_best(const Nodes& nodes, const Functions& functions, const std::vector<TermCurves>& terms, bool is_centre,
+                 double x_end, double unit, double factor, CurvedWeights& result) {
   double least_error = std::numeric_limits<double>::infinity();
   std::vector<Coefficients> best;
-  std::vector<Coefficients> coefficients(functions.size());
-  for (int i = 0; i < count; ++i) {
-    const double softening = (1 + least) * std::pow((1 + most) / (1 + least), i / (count - 1.0)) - 1;
-    const CubicFit fit(nodes, softening, x_end);
+  std::vector<Coefficients> coefficients(functions.count);
+  std::vector<CubicFit::Moments> moments;
+  for (std::size_t i = 0; i < softening_count; ++i) {
+    const CubicFit fit(nodes, i, x_end);
+    moments.clear();
+    fit.append_moments(functions, moments);
     double error = 0;
-    for (std::size_t f = 0; f < functions.size(); ++f) {
-      const Function& its = functions[f];
+    for (std::size_t f = 0; f < functions.count; ++f) {
+      const CubicFit::Moments& its = moments[f];
       if (is_centre) {
-        coefficients[f] = fit.cubic(its.y, its.y_1);
+        coefficients[f] = fit.cubic(its);
       } else if (terms[f / 3].normalised) {
         coefficients[f] = fit_mean(fit, its);
       } else {
-        coefficients[f] = fit_difference(fit, its, coefficients[f % 3], functions[f % 3].y_1);
+        coefficients[f] = fit_difference(fit, its, coefficients[f % 3], functions.y_1[f % 3]);
       }
-      error += fit.squared_error(its.y, coefficients[f]);
+      error += fit.squared_error(its, coefficients[f]);
     }
     if (i > 0 && !(error < least_error)) continue;
     least_error = error;
@@ -176,7 +218,7 @@ void append_best(const Nodes& nodes, const std::vector<Function>& functions, con
     if (i > 0) result.nearness.pop_back();
     result.nearness.push_back(fit.nearness(unit));
   }
-  for (std::size_t first = 0; first < functions.size(); first += 3) {
+  for (std::size_t first = 0; first < functions.count; first += 3) {
     CubicWeight weight;
     for (std::size_t c = 0; c < 3; ++c) {
       for (std::size_t power = 0; power < 3; ++power) {
@@ -187,30 +229,36 @@ void append_best(const Nodes& nodes, const std::vector<Function>& functions, con
   }
 }
 
+/// The values of the centre of a mean are what the pairs have: 1 less its own. The centre of a difference has no
+/// weight.
+void take_from_sums(const std::vector<TermCurves>& terms, double* weights) {
+  for (std::size_t f = 0; f < 3 * terms.size(); ++f) weights[f] = terms[f / 3].normalised ? 1 - weights[f] : 0;
+}
+
 }  // namespace
 
 CurvedWeights fit_curved_weights(const SurfaceWeights& weights, double radius_mm) {
   constexpr double least_x_end = 2;
   static const Nodes lengths = make_nodes(true);
   static const Nodes distances = make_nodes(false);
+  const double px_per_mm = weights.px_per_mm();
+  const std::size_t count = weights.functions();
   CurvedWeights result;
-  std::vector<Function> functions(3 * weights.terms().size());
+  Functions functions{count, std::vector<double>(node_count * count), std::vector<double>(count)};
   for (std::size_t row = 0; row < weights.rows(); ++row) {
     const bool is_centre = row == 0;
     const Nodes& nodes = is_centre ? lengths : distances;
-    for (std::size_t t = 0; t < weights.terms().size(); ++t) {
-      const bool normalised = weights.terms()[t].normalised;
-      for (int c = 0; c < 3; ++c) {
-        const auto value = [&](double x) {
-          if (!is_centre) return weights.on_surface(row, t, c, 1, std::sqrt(x));
-          return normalised ? 1 - weights.on_surface(0, t, c, x, 1) : 0;
-        };
-        Function& its = functions[3 * t + static_cast<std::size_t>(c)];
-        its.y_1 = value(1);
-        std::transform(nodes.x.begin(), nodes.x.end(), its.y.begin(), value);
+    std::copy_n(weights.on_plane(row), count, functions.y_1.begin());
+    if (is_centre) take_from_sums(weights.terms(), functions.y_1.data());
+    for (std::size_t i = 0; i < node_count; ++i) {
+      double* y = &functions.y[i * count];
+      if (is_centre) {
+        weights.on_surface(row, nodes.x[i], 1, y);
+        take_from_sums(weights.terms(), y);
+      } else {
+        weights.on_surface(row, 1, nodes.root[i], y);
       }
     }
-    const double px_per_mm = weights.px_per_mm();
     if (is_centre) {
       append_best(nodes, functions, weights.terms(), true, std::numeric_limits<double>::infinity(), 1 / px_per_mm, 1,
                   result);

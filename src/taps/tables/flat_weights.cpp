@@ -11,6 +11,10 @@ std::vector<std::array<float, 3>> make_flat_weights(const SurfaceWeights& weight
   const std::size_t rows = weights.rows();
   const std::size_t terms = weights.terms().size();
   std::vector<std::array<float, 3>> result(rows * terms);
+  std::vector<double> stretched(rows * weights.functions());
+  for (std::size_t row = 0; row < rows; ++row) {
+    weights.on_surface(row, stretch, stretch, &stretched[row * weights.functions()]);
+  }
   std::vector<double> its(rows);
   for (int c = 0; c < 3; ++c) {
     for (std::size_t t = 0; t < terms; ++t) {
@@ -18,8 +22,9 @@ std::vector<std::array<float, 3>> make_flat_weights(const SurfaceWeights& weight
       // They are those that were fitted, changed as those on a surface change with the size of a pixel.
       double total = 0;
       for (std::size_t row = 0; row < rows; ++row) {
-        its[row] = weights.fitted(row, t, c) + weights.on_surface(row, t, c, stretch, stretch) -
-                   weights.on_surface(row, t, c, 1, 1);
+        const std::size_t function = 3 * t + static_cast<std::size_t>(c);
+        its[row] = weights.fitted(row, t, c) + stretched[row * weights.functions() + function] -
+                   weights.on_plane(row)[function];
         if (term.normalised) its[row] = std::max(its[row], 0.0);
         total += row == 0 ? its[row] : 2 * its[row];
       }

@@ -44,17 +44,13 @@ RadialTable tabulate(const std::function<double(int, double)>& f, double r_max_m
   return table;
 }
 
-double value_at(const RadialTable& table, int channel, double r) {
+RadialPlace place_of(double r, int first_exponent) {
   int exponent = 0;
-  const double mantissa = 2 * std::frexp(r * r * r * r, &exponent) - 1;  // 0..1 within the octave
-  const int octave = exponent - 1 - table.first_exponent;
-  const auto& [a, b, c] = table.coefficients[channel];
-  if (!(r > 0) || octave < 0) return a[0];
-  if (octave >= RadialTable::octaves) {
-    constexpr int last = RadialTable::octaves - 1;
-    return static_cast<double>(a[last]) + b[last] + c[last];
-  }
-  return a[octave] + mantissa * (b[octave] + mantissa * static_cast<double>(c[octave]));
+  const double t = 2 * std::frexp(r * r * r * r, &exponent) - 1;
+  const int octave = exponent - 1 - first_exponent;
+  if (!(r > 0) || octave < 0) return {0, 0};
+  if (octave >= RadialTable::octaves) return {RadialTable::octaves - 1, 1};
+  return {octave, t};
 }
 
 }  // namespace dermis

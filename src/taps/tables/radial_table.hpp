@@ -24,7 +24,24 @@ struct RadialTable {
 /// parabola: where f falls too steeply its middle value is raised.
 RadialTable tabulate(const std::function<double(int, double)>& f, double r_max_mm);
 
+/// A place in a table: the octave of r^4, and t.
+struct RadialPlace {
+  int octave;
+  double t;
+};
+
+/// The place of r in tables whose first exponent is the one given.
+RadialPlace place_of(double r, int first_exponent);
+
+/// The value of a table at a place.
+inline double value_at(const RadialTable& table, int channel, const RadialPlace& place) {
+  const auto& [a, b, c] = table.coefficients[channel];
+  return a[place.octave] + place.t * (b[place.octave] + place.t * static_cast<double>(c[place.octave]));
+}
+
 /// The value of a table at r.
-double value_at(const RadialTable& table, int channel, double r);
+inline double value_at(const RadialTable& table, int channel, double r) {
+  return value_at(table, channel, place_of(r, table.first_exponent));
+}
 
 }  // namespace dermis

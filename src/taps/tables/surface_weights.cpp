@@ -28,17 +28,18 @@ SurfaceWeights::SurfaceWeights(const SizedTaps& taps, const std::vector<TermCurv
   constexpr double longest = 1e4;
   constexpr double largest_share = 1e4;
   const std::vector<double>& offsets_px = taps.placed.offsets_px;
-  for (int c = 0; c < 3; ++c) {
-    for (std::size_t row = 0; row < rows(); ++row) {
-      // A pair stands for the surface from half the way to one neighbour to half the way to the other.
-      const double before = row < 2 ? 0 : offsets_px[row - 2];
-      const double after = row == 0 ? 1 : row < offsets_px.size() ? offsets_px[row] : 2 * offsets_px[row - 1] - before;
-      const double its_length_mm = (after - before) / 2 / px_per_mm;
-      for (std::size_t t = 0; t < terms.size(); ++t) {
+  followers_.reserve(rows() * functions());
+  for (std::size_t row = 0; row < rows(); ++row) {
+    // A pair stands for the surface from half the way to one neighbour to half the way to the other.
+    const double before = row < 2 ? 0 : offsets_px[row - 2];
+    const double after = row == 0 ? 1 : row < offsets_px.size() ? offsets_px[row] : 2 * offsets_px[row - 1] - before;
+    const double its_length_mm = (after - before) / 2 / px_per_mm;
+    const RadialPlace its_place = place(row, 1, 1);
+    for (std::size_t t = 0; t < terms.size(); ++t) {
+      for (int c = 0; c < 3; ++c) {
         Follower its;
         const double weight = fitted(row, t, c);
-        const double density = row == 0 ? value_at(terms[t].centre, c, std::sqrt(distance_mm(0)))
-                                        : value_at(terms[t].falloff, c, distance_mm(row));
+        const double density = value_at(row == 0 ? terms[t].centre : terms[t].falloff, c, its_place);
         if (row == 0) {
           if (terms[t].normalised && density > 0) its.length_mm = weight / density;
         } else if (density != 0 && terms[t].normalised) {
@@ -51,10 +52,12 @@ SurfaceWeights::SurfaceWeights(const SizedTaps& taps, const std::vector<TermCurv
           const double first = fitted(row, 0, c);
           if (std::abs(rest) < largest_share * first) its.share = rest / first;
         }
-        followers_[c].push_back(its);
+        followers_.push_back(its);
       }
     }
   }
+  on_plane_.resize(followers_.size());
+  for (std::size_t row = 0; row < rows(); ++row) on_surface(row, 1, 1, &on_plane_[row * functions()]);
 }
 
 double SurfaceWeights::fitted(std::size_t row, std::size_t term, int channel) const {
@@ -65,14 +68,22 @@ double SurfaceWeights::distance_mm(std::size_t row) const {
   return (row == 0 ? taps_.centre_half_width_px : offsets_px()[row - 1]) / px_per_mm_;
 }
 
-double SurfaceWeights::on_surface(std::size_t row, std::size_t term, int channel, double length,
-                                  double distance) const {
-  const Follower& its = followers_[channel][row * terms_.size() + term];
-  if (row == 0) {
-    return its.length_mm * value_at(terms_[term].centre, channel, std::sqrt(distance_mm(0) * length));
+RadialPlace SurfaceWeights::place(std::size_t row, double length, double distance) const {
+  if (row == 0) return place_of(std::sqrt(distance_mm(0) * length), terms_[0].centre.first_exponent);
+  return place_of(distance_mm(row) * distance, terms_[0].falloff.first_exponent);
+}
+
+void SurfaceWeights::on_surface(std::size_t row, double length, double distance, double* weights) const {
+  const RadialPlace its_place = place(row, length, distance);
+  const Follower* its = &followers_[row * functions()];
+  for (std::size_t t = 0; t < terms_.size(); ++t) {
+    for (std::size_t c = 0; c < 3; ++c, ++its) {
+      const RadialTable& table = row == 0 ? terms_[t].centre : terms_[t].falloff;
+      const double its_length_mm = row == 0 ? its->length_mm : its->length_mm * length;
+      weights[3 * t + c] = its_length_mm * value_at(table, static_cast<int>(c), its_place);
+      if (its->share != 0) weights[3 * t + c] += its->share * weights[c];
+    }
   }
-  const double own = its.length_mm * length * value_at(terms_[term].falloff, channel, distance_mm(row) * distance);
-  return its.share == 0 ? own : own + its.share * on_surface(row, 0, channel, length, distance);
 }
 
 }  // namespace dermis

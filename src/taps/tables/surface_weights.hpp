@@ -18,6 +18,7 @@ struct TermCurves {
   RadialTable centre;   ///< integral of f over |x| < h, tabulated over sqrt(h) for resolution near 0
 };
 
+/// The tables of all terms of one radius have the same first exponents.
 TermCurves make_term_curves(const Profile& profile, const ModelTerm& model, double radius_mm);
 
 /// The weights that were fitted for a plane, carried over to other surfaces: a tap of a normalised term stands for a
@@ -34,11 +35,18 @@ class SurfaceWeights {
   double px_per_mm() const { return px_per_mm_; }
   const std::vector<double>& offsets_px() const { return taps_.placed.offsets_px; }
 
+  /// The functions of a row, three channels of one term after the other.
+  std::size_t functions() const { return 3 * terms_.size(); }
+
   /// The weight on the plane, as it was fitted, of the centre (row 0) or of a pair.
   double fitted(std::size_t row, std::size_t term, int channel) const;
 
-  /// The weight on a surface where lengths and distances are longer than on the plane by these factors.
-  double on_surface(std::size_t row, std::size_t term, int channel, double length, double distance) const;
+  /// The weights of a row, by function, on a surface where lengths and distances are longer than on the plane by these
+  /// factors.
+  void on_surface(std::size_t row, double length, double distance, double* weights) const;
+
+  /// The same where both factors are 1.
+  const double* on_plane(std::size_t row) const { return &on_plane_[row * functions()]; }
 
  private:
   struct Follower {
@@ -46,11 +54,13 @@ class SurfaceWeights {
     double share = 0;      ///< of the weight in the first term
   };
   double distance_mm(std::size_t row) const;
+  RadialPlace place(std::size_t row, double length, double distance) const;
 
   const SizedTaps& taps_;
   const std::vector<TermCurves>& terms_;
   double px_per_mm_;
-  std::array<std::vector<Follower>, 3> followers_;  ///< of each channel: tap by tap, each tap with all its terms
+  std::vector<Follower> followers_;  ///< by row and function
+  std::vector<double> on_plane_;     ///< by row and function
 };
 
 }  // namespace dermis
