@@ -145,11 +145,10 @@ class CubicFit {
 
   /// Whether A + t (B + t C) is nowhere negative, from far away to no distance at all.
   bool is_not_negative(const Coefficients& its) const {
-    const auto [a, b, c] = its;
     const double last = scale_ / softening_ - end_;
-    const double vertex = c > 0 ? std::clamp(-b / (2 * c), 0.0, last) : 0;
-    const auto at = [&](double t) { return a + t * (b + t * c); };
-    return a >= 0 && at(last) >= 0 && at(vertex) >= 0;
+    const double vertex = its[2] > 0 ? std::clamp(-its[1] / (2 * its[2]), 0.0, last) : 0;
+    const auto at = [&](double t) { return its[0] + t * (its[1] + t * its[2]); };
+    return its[0] >= 0 && at(last) >= 0 && at(vertex) >= 0;
   }
 
  private:
