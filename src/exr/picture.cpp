@@ -157,7 +157,7 @@ void Picture::add_channels(std::span<const std::string> names, Format format) {
   if (count > static_cast<std::size_t>(max_channels)) {
     throw Error(ErrorCode::usage, "channels", std::to_string(count), "at most " + std::to_string(max_channels));
   }
-  if (!more.empty()) state_->pixels = state_->pixels.with(more);
+  if (!more.empty()) state_->pixels.add(more);
 }
 
 Image Picture::view(std::span<const std::string> names) const {

@@ -43,14 +43,14 @@ void read_pixels(PictureReader& reader, PixelBlock& pixels) {
 
 }  // namespace
 
-Picture Picture::read(const std::filesystem::path& path) {
+Picture Picture::read(const std::filesystem::path& path, std::size_t room) {
   const std::vector<HeaderAttribute> header = read_header(path);
   const ImageLibrary& library = image_library();
   try {
     const auto reader = library.open(path, header);
     const PictureDescription& found = reader->description();
     Picture picture(found.data, found.display);
-    picture.state_->pixels = PixelBlock(found.data.width, found.data.height, found.channels);
+    picture.state_->pixels = PixelBlock(found.data.width, found.data.height, found.channels, room);
     read_pixels(*reader, picture.state_->pixels);
     picture.state_->description = found;
     picture.state_->description.channels.clear();

@@ -1,8 +1,10 @@
 #include <algorithm>
 #include <array>
 #include <exception>
+#include <iterator>
 #include <memory>
 #include <utility>
+#include <vector>
 
 #include "dermis/error.hpp"
 #include "dermis/exr.hpp"
@@ -32,20 +34,34 @@ std::string chosen_compression(std::string_view wanted, const std::string& of_fi
   return name;
 }
 
-PictureDescription description_to_write(PictureDescription description, const PixelBlock& pixels,
+std::vector<Channel> channels_to_write(const Picture& picture, std::span<const std::string> names) {
+  const std::span<const Channel> all = picture.channels();
+  if (names.empty()) return {all.begin(), all.end()};
+  for (const std::string& name : names) {
+    if (picture.find(name) == nullptr)
+      throw Error(ErrorCode::role_missing, "channel", escaped(name), "one of " + channel_list(picture));
+  }
+  std::vector<Channel> chosen;
+  std::copy_if(all.begin(), all.end(), std::back_inserter(chosen), [&](const Channel& channel) {
+    return std::find(names.begin(), names.end(), channel.name) != names.end();
+  });
+  return chosen;
+}
+
+PictureDescription description_to_write(PictureDescription description, std::span<const Channel> channels,
                                         std::string compression) {
-  for (const Channel& channel : pixels.channels()) description.channels.push_back({channel.name, channel.format});
+  for (const Channel& channel : channels) description.channels.push_back({channel.name, channel.format});
   description.compression = std::move(compression);
   return description;
 }
 
-void write_pixels(PictureWriter& writer, const PixelBlock& pixels) {
+void write_pixels(PictureWriter& writer, const PixelBlock& pixels, const Packing& packing) {
   const int step = std::min(batch_rows, pixels.height());
-  const auto packed =
-      std::make_unique_for_overwrite<std::byte[]>(pixels.packed_row_bytes() * static_cast<std::size_t>(step));
+  const auto packed = std::make_unique_for_overwrite<std::byte[]>(
+      packing.pixel_bytes() * static_cast<std::size_t>(pixels.width()) * static_cast<std::size_t>(step));
   for (int row = 0; row < pixels.height(); row += step) {
     const int rows = std::min(step, pixels.height() - row);
-    pixels.pack(packed.get(), row, rows);
+    pixels.pack(packing, packed.get(), row, rows);
     writer.write_rows(row, rows, packed.get());
   }
   writer.close();
@@ -53,17 +69,19 @@ void write_pixels(PictureWriter& writer, const PixelBlock& pixels) {
 
 }  // namespace
 
-void Picture::write(const std::filesystem::path& path, std::string_view compression) const {
+void Picture::write(const std::filesystem::path& path, std::string_view compression,
+                    std::span<const std::string> names) const {
   const PixelBlock& pixels = state_->pixels;
   const std::string method = chosen_compression(compression, state_->description.compression);
   const auto fail = [&path](std::string_view why) {
     throw Error(ErrorCode::output, escaped(path.string()), escaped(why), "a file that can be written");
   };
   if (pixels.channels().empty()) fail("a picture without channels");
+  const std::vector<Channel> channels = channels_to_write(*this, names);
   try {
     TemporaryFile file(path);
-    write_pixels(*image_library().create(file.stream(), description_to_write(state_->description, pixels, method)),
-                 pixels);
+    const PictureDescription description = description_to_write(state_->description, channels, method);
+    write_pixels(*image_library().create(file.stream(), description), pixels, Packing(channels));
     file.commit();
   } catch (const Error&) {
     throw;
