@@ -77,6 +77,6 @@ class ImageLibrary {
 const ImageLibrary& image_library();
 
 /// The same where it is linked; what the program loads exports it under this name.
-extern "C" const ImageLibrary& dermis_image_library();
+extern "C" const ImageLibrary* dermis_image_library();
 
 }  // namespace dermis::exr

@@ -3,6 +3,6 @@
 
 namespace dermis::exr {
 
-const ImageLibrary& image_library() { return dermis_image_library(); }
+const ImageLibrary& image_library() { return *dermis_image_library(); }
 
 }  // namespace dermis::exr

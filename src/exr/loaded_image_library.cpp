@@ -7,7 +7,7 @@
 namespace dermis::exr {
 namespace {
 
-using Entry = const ImageLibrary& (*)();
+using Entry = const ImageLibrary* (*)();
 
 /// The message of the loader names the file.
 [[noreturn]] void cannot_load() {
@@ -21,7 +21,7 @@ const ImageLibrary& load() {
   if (module == nullptr) cannot_load();
   void* const entry = dlsym(module, "dermis_image_library");
   if (entry == nullptr) cannot_load();
-  return reinterpret_cast<Entry>(entry)();
+  return *reinterpret_cast<Entry>(entry)();
 }
 
 }  // namespace

@@ -216,9 +216,9 @@ class OpenImageIO final : public ImageLibrary {
 
 }  // namespace
 
-extern "C" const ImageLibrary& dermis_image_library() {
+extern "C" const ImageLibrary* dermis_image_library() {
   static const OpenImageIO library;
-  return library;
+  return &library;
 }
 
 }  // namespace dermis::exr
