@@ -37,8 +37,9 @@ struct Channel {
 class Picture {
  public:
   /// Reads a file. Throws Error(input_missing) if it is not there, Error(input_unsupported) if it is damaged, not EXR,
-  /// deep, or has several parts, or is larger than 65536 pixels on a side or 1024 channels.
-  static Picture read(const std::filesystem::path& path);
+  /// deep, or has several parts, or is larger than 65536 pixels on a side or 1024 channels. So many channels of four
+  /// bytes can then be added without a copy of all pixels as there is `room`.
+  static Picture read(const std::filesystem::path& path, std::size_t room = 0);
 
   /// A picture without channels, black outside `data`.
   Picture(Window data, Window display);
@@ -72,8 +73,10 @@ class Picture {
 
   /// Writes to a temporary file beside `path`, then renames it. `compression` is an OpenEXR name ("zip", "piz", "dwaa",
   /// ...); if empty that of the file that was read, or "zip" if that loses data. Throws Error(usage) for another name,
-  /// Error(output) if the file cannot be written, leaving what was at `path`.
-  void write(const std::filesystem::path& path, std::string_view compression = {}) const;
+  /// Error(output) if the file cannot be written, leaving what was at `path`. With `names` the file has these channels
+  /// alone, in the picture's order, and all attributes; throws Error(role_missing) if there is none of a name.
+  void write(const std::filesystem::path& path, std::string_view compression = {},
+             std::span<const std::string> names = {}) const;
 
  private:
   struct State;

@@ -1,7 +1,5 @@
-#include <OpenImageIO/imagebuf.h>
-#include <OpenImageIO/imageio.h>
-
 #include <algorithm>
+#include <bit>
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
@@ -10,6 +8,7 @@
 #include "dermis/error.hpp"
 #include "dermis/exr.hpp"
 #include "exr/header.hpp"
+#include "exr/image_library.hpp"
 #include "exr/message_text.hpp"
 #include "exr/picture_state.hpp"
 
@@ -70,18 +69,26 @@ Layout layout_of(const Picture& picture, std::span<const std::string> names, con
           .offset = first.byte_offset};
 }
 
-void convert_half(const std::byte* from, std::size_t pixel_bytes, int width, int height, float* to) {
-  const auto stride = static_cast<OIIO::stride_t>(pixel_bytes);
-  OIIO::convert_image(1, width, height, 1, from, OIIO::TypeHalf, stride, stride * width, OIIO::AutoStride, to,
-                      OIIO::TypeFloat, sizeof(float), OIIO::AutoStride, OIIO::AutoStride);
+/// The value of a half as float, which has the same fraction bits and more, and a bias of 127 in place of 15. A
+/// fraction without an exponent comes to its place by the factor, too.
+float float_of(std::uint16_t half) {
+  constexpr std::uint32_t infinity = 0x7F800000;
+  const std::uint32_t magnitude = (half & 0x7FFFU) << 13;
+  const std::uint32_t sign = (half & 0x8000U) << 16;
+  const auto scaled = std::bit_cast<std::uint32_t>(std::bit_cast<float>(magnitude) * 0x1p112F);
+  const bool is_finite = magnitude < (0x7C00U << 13);
+  return std::bit_cast<float>(sign | (is_finite ? scaled : magnitude | infinity));
 }
+
+float float_of(std::uint32_t value) { return static_cast<float>(value); }
+float float_of(float value) { return value; }
 
 template <typename Value>
 void convert(const std::byte* from, std::size_t pixel_bytes, std::span<float> to) {
   for (float& out : to) {
     Value value;
     std::memcpy(&value, from, sizeof value);
-    out = static_cast<float>(value);
+    out = float_of(value);
     from += pixel_bytes;
   }
 }
@@ -91,39 +98,25 @@ void convert(const std::byte* from, std::size_t pixel_bytes, std::span<float> to
 Picture::Picture(Window data, Window display) {
   check_window("data window", data);
   check_window("display window", display);
-  OIIO::ImageSpec spec(data.width, data.height, 0, OIIO::TypeFloat);
-  spec.x = data.x;
-  spec.y = data.y;
-  spec.full_x = display.x;
-  spec.full_y = display.y;
-  spec.full_width = display.width;
-  spec.full_height = display.height;
-  state_ = std::make_unique<State>(State{std::move(spec), "zip", PixelBlock(data.width, data.height, {})});
+  state_ = std::make_unique<State>(
+      State{{data, display, "zip", {}, image_library().no_attributes()}, PixelBlock(data.width, data.height, {})});
 }
 
 Picture::~Picture() = default;
 Picture::Picture(Picture&&) noexcept = default;
 Picture& Picture::operator=(Picture&&) noexcept = default;
 
-int Picture::width() const { return state_->spec.width; }
+int Picture::width() const { return state_->description.data.width; }
 
-int Picture::height() const { return state_->spec.height; }
+int Picture::height() const { return state_->description.data.height; }
 
-Window Picture::data_window() const {
-  const OIIO::ImageSpec& spec = state_->spec;
-  return {spec.x, spec.y, spec.width, spec.height};
-}
+Window Picture::data_window() const { return state_->description.data; }
 
-Window Picture::display_window() const {
-  const OIIO::ImageSpec& spec = state_->spec;
-  return {spec.full_x, spec.full_y, spec.full_width, spec.full_height};
-}
+Window Picture::display_window() const { return state_->description.display; }
 
-double Picture::pixel_aspect() const {
-  return static_cast<double>(state_->spec.get_float_attribute("PixelAspectRatio", 1.0F));
-}
+double Picture::pixel_aspect() const { return state_->description.attributes->pixel_aspect(); }
 
-std::string Picture::compression() const { return state_->compression; }
+std::string Picture::compression() const { return state_->description.compression; }
 
 std::span<const Channel> Picture::channels() const { return state_->pixels.channels(); }
 
@@ -136,7 +129,7 @@ std::vector<float> Picture::plane(std::string_view name) const {
   std::vector<float> out(static_cast<std::size_t>(width()) * static_cast<std::size_t>(height()));
   switch (channel.format) {
     case Format::f16:
-      convert_half(from, pixels.pixel_bytes(), width(), height(), out.data());
+      convert<std::uint16_t>(from, pixels.pixel_bytes(), out);
       break;
     case Format::u32:
       convert<std::uint32_t>(from, pixels.pixel_bytes(), out);
@@ -164,7 +157,7 @@ void Picture::add_channels(std::span<const std::string> names, Format format) {
   if (count > static_cast<std::size_t>(max_channels)) {
     throw Error(ErrorCode::usage, "channels", std::to_string(count), "at most " + std::to_string(max_channels));
   }
-  if (!more.empty()) state_->pixels = state_->pixels.with(more);
+  if (!more.empty()) state_->pixels.add(more);
 }
 
 Image Picture::view(std::span<const std::string> names) const {
@@ -179,7 +172,7 @@ void Picture::set_attribute(std::string_view name, std::string_view value) {
   if (name.empty() || name.size() > max_name || name.find('\0') != std::string_view::npos) {
     throw Error(ErrorCode::usage, "name of an attribute", '"' + escaped(name) + '"', "1 to 255 characters");
   }
-  state_->spec.attribute({name.data(), name.size()}, OIIO::string_view(value.data(), value.size()));
+  state_->description.attributes->set_text(name, value);
 }
 
 }  // namespace dermis::exr

@@ -1,16 +1,16 @@
-#include <OpenImageIO/filesystem.h>
-#include <OpenImageIO/imageio.h>
-
 #include <algorithm>
 #include <array>
 #include <exception>
+#include <iterator>
 #include <memory>
+#include <utility>
+#include <vector>
 
 #include "dermis/error.hpp"
 #include "dermis/exr.hpp"
+#include "exr/image_library.hpp"
 #include "exr/message_text.hpp"
 #include "exr/picture_state.hpp"
-#include "exr/quiet_oiio.hpp"
 #include "exr/temporary_file.hpp"
 
 namespace dermis::exr {
@@ -18,7 +18,6 @@ namespace {
 
 constexpr std::array<std::string_view, 5> lossless = {"none", "rle", "zips", "zip", "piz"};
 constexpr std::array<std::string_view, 5> lossy = {"pxr24", "b44", "b44a", "dwaa", "dwab"};
-constexpr const char* dwa_level = "openexr:dwaCompressionLevel";
 constexpr int batch_rows = 256;  // the rows of the largest block that OpenEXR compresses at once
 
 bool among(std::span<const std::string_view> names, std::string_view name) {
@@ -35,59 +34,54 @@ std::string chosen_compression(std::string_view wanted, const std::string& of_fi
   return name;
 }
 
-OIIO::ImageSpec spec_to_write(OIIO::ImageSpec spec, const PixelBlock& pixels, const std::string& compression) {
-  spec.nchannels = static_cast<int>(pixels.channels().size());
-  for (const Channel& channel : pixels.channels()) {
-    spec.channelnames.push_back(channel.name);
-    spec.channelformats.push_back(type_of(channel.format));
+std::vector<Channel> channels_to_write(const Picture& picture, std::span<const std::string> names) {
+  const std::span<const Channel> all = picture.channels();
+  if (names.empty()) return {all.begin(), all.end()};
+  for (const std::string& name : names) {
+    if (picture.find(name) == nullptr)
+      throw Error(ErrorCode::role_missing, "channel", escaped(name), "one of " + channel_list(picture));
   }
-  const float level = spec.get_float_attribute(dwa_level, 0.0F);
-  const bool keeps_level = compression.starts_with("dwa") && level >= 1.0F;
-  spec.attribute("compression",
-                 keeps_level ? compression + ":" + std::to_string(static_cast<int>(level)) : compression);
-  if (spec.find_attribute("DateTime") == nullptr) {
-    // OpenImageIO adds the time of writing where there is no such attribute, and drops one of the wrong type.
-    spec.attribute("DateTime", 0);
-  }
-  return spec;
+  std::vector<Channel> chosen;
+  std::copy_if(all.begin(), all.end(), std::back_inserter(chosen), [&](const Channel& channel) {
+    return std::find(names.begin(), names.end(), channel.name) != names.end();
+  });
+  return chosen;
 }
 
-/// Empty if it worked, else what went wrong.
-std::string write_pixels(OIIO::ImageOutput& output, const OIIO::ImageSpec& spec, const PixelBlock& pixels) {
+PictureDescription description_to_write(PictureDescription description, std::span<const Channel> channels,
+                                        std::string compression) {
+  for (const Channel& channel : channels) description.channels.push_back({channel.name, channel.format});
+  description.compression = std::move(compression);
+  return description;
+}
+
+void write_pixels(PictureWriter& writer, const PixelBlock& pixels, const Packing& packing) {
   const int step = std::min(batch_rows, pixels.height());
-  const auto packed =
-      std::make_unique_for_overwrite<std::byte[]>(pixels.packed_row_bytes() * static_cast<std::size_t>(step));
+  const auto packed = std::make_unique_for_overwrite<std::byte[]>(
+      packing.pixel_bytes() * static_cast<std::size_t>(pixels.width()) * static_cast<std::size_t>(step));
   for (int row = 0; row < pixels.height(); row += step) {
     const int rows = std::min(step, pixels.height() - row);
-    pixels.pack(packed.get(), row, rows);
-    const int y = spec.y + row;
-    if (!output.write_scanlines(y, y + rows, 0, OIIO::TypeUnknown, packed.get())) return output.geterror();
+    pixels.pack(packing, packed.get(), row, rows);
+    writer.write_rows(row, rows, packed.get());
   }
-  return output.close() ? "" : output.geterror();
-}
-
-std::string write_to(std::FILE* stream, const OIIO::ImageSpec& spec, const PixelBlock& pixels) {
-  OIIO::Filesystem::IOFile proxy(stream, OIIO::Filesystem::IOProxy::Write);
-  const auto output = OIIO::ImageOutput::create("openexr");
-  if (!output) return OIIO::geterror();
-  if (!output->set_ioproxy(&proxy) || !output->open("picture.exr", spec)) return output->geterror();
-  return write_pixels(*output, spec, pixels);
+  writer.close();
 }
 
 }  // namespace
 
-void Picture::write(const std::filesystem::path& path, std::string_view compression) const {
+void Picture::write(const std::filesystem::path& path, std::string_view compression,
+                    std::span<const std::string> names) const {
   const PixelBlock& pixels = state_->pixels;
-  const std::string method = chosen_compression(compression, state_->compression);
+  const std::string method = chosen_compression(compression, state_->description.compression);
   const auto fail = [&path](std::string_view why) {
     throw Error(ErrorCode::output, escaped(path.string()), escaped(why), "a file that can be written");
   };
   if (pixels.channels().empty()) fail("a picture without channels");
-  const Quiet quiet;
+  const std::vector<Channel> channels = channels_to_write(*this, names);
   try {
     TemporaryFile file(path);
-    const std::string error = write_to(file.stream(), spec_to_write(state_->spec, pixels, method), pixels);
-    if (!error.empty()) fail(error);
+    const PictureDescription description = description_to_write(state_->description, channels, method);
+    write_pixels(*image_library().create(file.stream(), description), pixels, Packing(channels));
     file.commit();
   } catch (const Error&) {
     throw;

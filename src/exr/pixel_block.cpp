@@ -6,13 +6,28 @@
 
 namespace dermis::exr {
 
-PixelBlock::PixelBlock(int width, int height, std::span<const ChannelName> channels) : width_(width), height_(height) {
+Packing::Packing(std::span<const Channel> channels) {
+  for (const Channel& channel : channels) {
+    const std::size_t bytes = bytes_of(channel.format);
+    if (!runs_.empty() && runs_.back().offset + runs_.back().bytes == channel.byte_offset) {
+      runs_.back().bytes += bytes;
+    } else {
+      runs_.push_back({pixel_bytes_, channel.byte_offset, bytes});
+    }
+    pixel_bytes_ += bytes;
+  }
+}
+
+PixelBlock::PixelBlock(int width, int height, std::span<const ChannelName> channels, std::size_t room)
+    : width_(width), height_(height) {
   channels_.reserve(channels.size());
   for (const ChannelName& channel : channels) channels_.push_back({channel.name, channel.format, 0});
   const std::size_t wide_end = place(4, 0);
   const std::size_t end = place(2, wide_end);
-  pixel_bytes_ = wide_end > 0 ? (end + 3) / 4 * 4 : end;
-  find_runs();
+  const bool is_wide = wide_end > 0 || room > 0;
+  used_bytes_ = is_wide ? (end + 3) / 4 * 4 : end;
+  pixel_bytes_ = used_bytes_ + 4 * room;
+  packing_ = Packing(channels_);
   bytes_ = std::make_unique_for_overwrite<std::byte[]>(row_bytes() * static_cast<std::size_t>(height_));
 }
 
@@ -26,42 +41,51 @@ std::size_t PixelBlock::place(std::size_t value_bytes, std::size_t offset) {
   return offset;
 }
 
-void PixelBlock::find_runs() {
-  for (const Channel& channel : channels_) {
-    const std::size_t bytes = bytes_of(channel.format);
-    if (!runs_.empty() && runs_.back().offset + runs_.back().bytes == channel.byte_offset) {
-      runs_.back().bytes += bytes;
-    } else {
-      runs_.push_back({packed_pixel_bytes_, channel.byte_offset, bytes});
-    }
-    packed_pixel_bytes_ += bytes;
-  }
-}
-
 const Channel* PixelBlock::find(std::string_view name) const {
   const auto it =
       std::find_if(channels_.begin(), channels_.end(), [name](const Channel& channel) { return channel.name == name; });
   return it == channels_.end() ? nullptr : &*it;
 }
 
-std::size_t PixelBlock::packed_row_bytes() const { return packed_pixel_bytes_ * static_cast<std::size_t>(width_); }
-
 void PixelBlock::unpack(const std::byte* packed, int first_row, int rows) {
   std::byte* pixel = row(first_row);
   for (std::int64_t i = 0; i < std::int64_t{rows} * width_; ++i) {
-    for (const Run& run : runs_) std::memcpy(pixel + run.offset, packed + run.packed_offset, run.bytes);
+    packing_.unpack(packed, pixel);
     pixel += pixel_bytes_;
-    packed += packed_pixel_bytes_;
+    packed += packing_.pixel_bytes();
   }
 }
 
-void PixelBlock::pack(std::byte* packed, int first_row, int rows) const {
+void PixelBlock::pack(const Packing& packing, std::byte* packed, int first_row, int rows) const {
   const std::byte* pixel = row(first_row);
   for (std::int64_t i = 0; i < std::int64_t{rows} * width_; ++i) {
-    for (const Run& run : runs_) std::memcpy(packed + run.packed_offset, pixel + run.offset, run.bytes);
+    packing.pack(packed, pixel);
     pixel += pixel_bytes_;
-    packed += packed_pixel_bytes_;
+    packed += packing.pixel_bytes();
   }
+}
+
+void PixelBlock::add(std::span<const ChannelName> more) {
+  if (has_room_for(more))
+    add_in_room(more);
+  else
+    *this = with(more);
+}
+
+bool PixelBlock::has_room_for(std::span<const ChannelName> more) const {
+  return used_bytes_ + 4 * more.size() <= pixel_bytes_ &&
+         std::all_of(more.begin(), more.end(), [](const ChannelName& name) { return bytes_of(name.format) == 4; });
+}
+
+void PixelBlock::add_in_room(std::span<const ChannelName> more) {
+  const std::size_t bytes = 4 * more.size();
+  std::byte* pixel = data() + used_bytes_;
+  for (std::int64_t i = 0; i < std::int64_t{height_} * width_; ++i, pixel += pixel_bytes_) std::memset(pixel, 0, bytes);
+  for (const ChannelName& name : more) {
+    channels_.push_back({name.name, name.format, used_bytes_});
+    used_bytes_ += 4;
+  }
+  packing_ = Packing(channels_);
 }
 
 PixelBlock PixelBlock::with(std::span<const ChannelName> more) const {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <csignal>
 #include <cstring>
+#include <numeric>
 
 #include "dermis/exr.hpp"
 #include "exr/header.hpp"
@@ -273,6 +274,78 @@ TEST_CASE("planes hold the values, not scaled ones") {
   const Failure missing = failure_of([&] { picture.plane("F"); });
   REQUIRE(missing.code == ErrorCode::role_missing);
   REQUIRE(missing.says("f, h, u"));
+}
+
+TEST_CASE("every half has its value") {
+  constexpr int side = 256;  // side x side values are all there are
+  std::vector<std::uint16_t> halves(side * side);
+  std::iota(halves.begin(), halves.end(), std::uint16_t{0});
+  raw_exr::File file;
+  file.data = file.display = {0, 0, side, side};
+  file.channels = {{"h", Format::f16, std::string(reinterpret_cast<const char*>(halves.data()), 2 * halves.size())}};
+  const TemporaryFolder folder;
+  write_bytes(folder / "in.exr", raw_exr::bytes(file));
+  const std::vector<float> values = Picture::read(folder / "in.exr").plane("h");
+  std::vector<float> expected(halves.size());
+  OIIO::convert_types(OIIO::TypeHalf, halves.data(), OIIO::TypeFloat, expected.data(), side * side);
+  for (std::size_t i = 0; i < halves.size(); ++i) {
+    INFO(i);
+    const bool both_nan = std::isnan(values[i]) && std::isnan(expected[i]);
+    REQUIRE((both_nan || std::memcmp(&values[i], &expected[i], sizeof(float)) == 0));
+  }
+}
+
+TEST_CASE("channels for which there is room are those that are added without it") {
+  Random random(15);
+  const TemporaryFolder folder;
+  const raw_exr::File file = random_file(random);
+  write_bytes(folder / "in.exr", raw_exr::bytes(file));
+  Picture with_room = Picture::read(folder / "in.exr", 3);
+  Picture without = Picture::read(folder / "in.exr");
+  const void* const pixels = with_room.view(Names{"lone"}).host;
+  const Names names = {"L.sss.R", "L.sss.G", "L.sss.B"};
+  for (Picture* picture : {&with_room, &without}) {
+    picture->add_channels(names, Format::f32);
+    REQUIRE(picture->view(names).layout.format == Format::f32);
+  }
+  REQUIRE(with_room.view(Names{"lone"}).host == pixels);  // no copy was made
+  with_room.add_channels(Names{"more"}, Format::f32);     // for which there is no room
+  without.add_channels(Names{"more"}, Format::f32);
+  for (const std::string& name : {names[0], names[1], names[2], std::string("more")}) {
+    for (const float value : with_room.plane(name)) REQUIRE(value == 0);
+  }
+  with_room.write(folder / "with_room.exr");
+  without.write(folder / "without.exr");
+  require_channels(folder / "with_room.exr", file.channels);
+  REQUIRE(stored_channels(folder / "with_room.exr").size() == file.channels.size() + 4);
+  for (const auto& [name, channel] : stored_channels(folder / "without.exr")) {
+    REQUIRE(stored_channels(folder / "with_room.exr").at(name).values == channel.values);
+  }
+}
+
+TEST_CASE("a file of some channels has these alone, bit for bit, and all attributes") {
+  Random random(16);
+  const TemporaryFolder folder;
+  raw_exr::File file = random_file(random);
+  file.attributes = raw_exr::attribute("comments", "string", "kept");
+  write_bytes(folder / "in.exr", raw_exr::bytes(file));
+  const Picture picture = Picture::read(folder / "in.exr");
+  picture.write(folder / "all.exr");
+  picture.write(folder / "some.exr", {}, Names{"lone", "L.Depth.Z"});
+  std::erase_if(file.channels,
+                [](const auto& channel) { return channel.name != "lone" && channel.name != "L.Depth.Z"; });
+  require_channels(folder / "some.exr", file.channels);
+  REQUIRE(stored_channels(folder / "some.exr").size() == 2);
+  auto all = attributes_of(folder / "all.exr");
+  auto some = attributes_of(folder / "some.exr");
+  for (auto* attributes : {&all, &some})
+    std::erase_if(*attributes, [](const auto& attribute) { return attribute.name == "channels"; });
+  REQUIRE(all == some);
+  const Failure missing = failure_of([&] { picture.write(folder / "none.exr", {}, Names{"lone", "lost"}); });
+  REQUIRE(missing.code == ErrorCode::role_missing);
+  REQUIRE(missing.says("lost"));
+  REQUIRE(missing.says("L.Depth.Z"));
+  REQUIRE_FALSE(std::filesystem::exists(folder / "none.exr"));
 }
 
 TEST_CASE("added channels are zero, keep what is there, and can be written through a view") {

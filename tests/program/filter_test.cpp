@@ -80,6 +80,50 @@ TEST_CASE("filter adds the scattered light, recomposes the beauty and passes the
   CHECK(after.plane("ViewLayer.sss.R") != before.plane("ViewLayer.DiffDir.R"));
 }
 
+TEST_CASE("--output-layers writes some channels of the whole result, with all attributes") {
+  Random random(12);
+  const TemporaryFolder folder;
+  const MadeScene made = random_touching(folder, random);
+  const Picture picture = Picture::read(made.path);
+  const std::vector<float> alpha(static_cast<std::size_t>(picture.width()) * picture.height(), 0.5F);
+  const MadeScene scene{folder / "alpha.exr", made.camera};
+  PictureCopy(made.path).with("ViewLayer.Combined.A", alpha).attribute("note", "kept").write(scene.path);
+  const auto filtered = [&](const std::string& layers) {
+    Words more = both_materials;
+    if (!layers.empty()) more.insert(more.end(), {"--output-layers", layers});
+    run_well(filter_arguments(scene, folder / (layers + "out.exr"), more));
+    return Picture::read(folder / (layers + "out.exr"));
+  };
+  const Picture whole = filtered("");
+  const std::set<std::string> sss = {"ViewLayer.sss.R", "ViewLayer.sss.G", "ViewLayer.sss.B"};
+  std::set<std::string> changed = sss;
+  for (const char* c : {"R", "G", "B", "A"}) changed.insert(std::string("ViewLayer.Combined.") + c);
+  const std::vector<std::pair<std::string, std::set<std::string>>> cases = {
+      {"all", names_of(whole)}, {"changed", changed}, {"sss", sss}};
+  for (const auto& [layers, names] : cases) {
+    INFO(layers);
+    const Picture some = filtered(layers);
+    CHECK(names_of(some) == names);
+    for (const auto& channel : some.channels()) CHECK(bits_of(some, channel.name) == bits_of(whole, channel.name));
+    CHECK(attribute(folder / (layers + "out.exr"), "note") == "kept");
+    CHECK(attribute(folder / (layers + "out.exr"), "dermis:command") ==
+          attribute(folder / "out.exr", "dermis:command"));
+  }
+  check_refused(
+      run_program(filter_arguments(scene, folder / "x.exr", {"--profile", "skin", "--output-layers", "beauty"})), 2,
+      {"--output-layers: got beauty, want all or changed or sss"});
+}
+
+TEST_CASE("--output-layers changed needs no beauty") {
+  const TemporaryFolder folder;
+  const MadeScene made = make_scene(folder / "in.exr", "touching", 30, 20, 3);
+  const MadeScene scene{folder / "without.exr", made.camera};
+  PictureCopy(made.path).without("ViewLayer.Combined").write(scene.path);
+  run_well(filter_arguments(scene, folder / "out.exr", {"--profile", "skin", "--output-layers", "changed"}));
+  CHECK(names_of(Picture::read(folder / "out.exr")) ==
+        std::set<std::string>{"ViewLayer.sss.R", "ViewLayer.sss.G", "ViewLayer.sss.B"});
+}
+
 TEST_CASE("pixels of other materials keep their bits") {
   Random random(11);
   const TemporaryFolder folder;

@@ -1,5 +1,8 @@
 // The program as it is started from a shell; other tests call it in processes that have loaded it already.
+#include <sys/wait.h>
+
 #include <cstdlib>
+#include <filesystem>
 #include <string>
 
 #include "program/made_picture.hpp"
@@ -11,7 +14,59 @@ namespace {
 
 std::string quoted(const std::string& word) { return " '" + word + "'"; }
 
+/// What the loader of shared libraries does during a run of `program`, if that ends with this code.
+std::string loaded_by(const std::string& program, const std::string& call, int exit_code,
+                      const std::string& more = {}) {
+  const TemporaryFolder folder;
+  const std::string command = more + " LD_DEBUG=files LD_DEBUG_OUTPUT='" + (folder / "loader") + "'" + quoted(program) +
+                              " " + call + " >" + quoted(folder / "stdout") + " 2>" + quoted(folder / "stderr");
+  const int status = std::system(command.c_str());
+  INFO(call << ": " << bytes_of_file(folder / "stderr"));
+  CHECK(WIFEXITED(status));
+  CHECK(WEXITSTATUS(status) == exit_code);
+  std::string text;
+  for (const auto& entry : std::filesystem::directory_iterator(folder / "."))
+    if (entry.path().filename().string().starts_with("loader")) text += bytes_of_file(entry.path());
+  return text;
+}
+
+bool has_kernels(const std::string& folder) {
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder))
+    if (entry.path().extension() == ".so") return true;
+  return false;
+}
+
 }  // namespace
+
+TEST_CASE("what needs no picture loads no image library and compiles no kernel") {
+  const TemporaryFolder folder;
+  std::filesystem::create_directory(folder / "cache");
+  const std::string cache = "POCL_CACHE_DIR='" + (folder / "cache") + "'";
+  for (const char* call : {"--version", "--help", "filter --help", "profiles", "taps skin", "devices"})
+    CHECK(loaded_by(DERMIS_PROGRAM, call, 0, cache).find("OpenImageIO") == std::string::npos);
+  CHECK(loaded_by(DERMIS_PROGRAM, "filter in.exr -o out.png", 2).find("OpenImageIO") == std::string::npos);
+  CHECK_FALSE(has_kernels(folder / "cache"));
+  const MadeScene scene = make_scene(folder / "in.exr", "touching", 20, 10, 3);
+  const std::string info = loaded_by(DERMIS_PROGRAM, "info" + quoted(scene.path), 0);
+  CHECK(info.find("libOpenImageIO") != std::string::npos);
+}
+
+TEST_CASE("a program without its module says so when a picture is to be read") {
+  const TemporaryFolder folder;
+  const std::string lonely = folder / "dermis";
+  std::filesystem::copy_file(DERMIS_PROGRAM, lonely);
+  const MadeScene scene = make_scene(folder / "in.exr", "touching", 20, 10, 3);
+  const std::string errors = folder / "errors";
+  CHECK(std::system((quoted(lonely) + " profiles >" + quoted(folder / "stdout") + " 2>" + quoted(errors)).c_str()) ==
+        0);
+  CHECK(bytes_of_file(errors).empty());
+  const int status = std::system((quoted(lonely) + " info" + quoted(scene.path) + " 2>" + quoted(errors)).c_str());
+  CHECK(WEXITSTATUS(status) == 3);
+  const std::string message = bytes_of_file(errors);
+  CHECK(message.starts_with("dermis: error: image library: got "));
+  CHECK(message.find("dermis_openimageio.so") != std::string::npos);
+  CHECK(message.find('\n') == message.size() - 1);
+}
 
 TEST_CASE("the first run of all, which compiles the kernels, says nothing") {
   const TemporaryFolder folder;

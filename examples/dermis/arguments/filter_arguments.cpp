@@ -35,6 +35,9 @@ void add_light_arguments(CLI::App& app, FilterArguments& arguments) {
 void add_result_arguments(CLI::App& app, FilterArguments& arguments) {
   const HelpGroup group(app, "Results");
   add_compression_argument(app, arguments.output.compression);
+  add_word(app, "--output-layers", arguments.layers,
+           "all: also the channels that the filter only passes through; changed: the beauty with its alpha and the "
+           "scattered light; sss: the scattered light");
   app.add_option("--tile-map", arguments.output.files.tile_map,
                  "also draw what became of each tile, over the dimmed light, and print what the colours mean")
       ->check(folder_or_file_ending({".png"}))

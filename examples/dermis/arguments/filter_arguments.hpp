@@ -2,6 +2,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <array>
 #include <optional>
 
 #include "arguments/design_arguments.hpp"
@@ -11,11 +12,20 @@
 #include "arguments/quality_arguments.hpp"
 #include "arguments/surface_arguments.hpp"
 #include "dermis/plan.hpp"
+#include "dermis/words.hpp"
 
 namespace dermis::program {
 
+/// The channels that a result has.
+enum class OutputLayers {
+  all,      ///< those of the input and the scattered light
+  changed,  ///< the beauty with its alpha, and the scattered light
+  sss,      ///< the scattered light
+};
+
 struct FilterArguments {
   OutputArguments output;
+  OutputLayers layers = OutputLayers::all;
   bool reuse = false;
   SurfaceArguments surface;
   DeviceArguments device;
@@ -30,3 +40,9 @@ struct FilterArguments {
 void add_filter_arguments(CLI::App& app, FilterArguments& arguments);
 
 }  // namespace dermis::program
+
+template <>
+inline constexpr std::array<dermis::Named<dermis::program::OutputLayers>, 3>
+    dermis::word_table<dermis::program::OutputLayers> = {{{dermis::program::OutputLayers::all, "all"},
+                                                          {dermis::program::OutputLayers::changed, "changed"},
+                                                          {dermis::program::OutputLayers::sss, "sss"}}};

@@ -38,6 +38,20 @@ std::vector<std::string> beauty_channels(const exr::Roles& roles) {
   return sum.front();
 }
 
+/// The channels that the result has; none stands for all.
+std::vector<std::string> channels_to_write(OutputLayers layers, const SurfaceInput& input) {
+  if (layers == OutputLayers::all) return {};
+  std::vector<std::string> names = channels_of_pass(input.roles, "sss");
+  if (layers == OutputLayers::sss) return names;
+  for (const std::string& name : beauty_channels(input.roles)) {
+    names.push_back(name);
+    // The alpha belongs to the beauty, whose colours are premultiplied by it.
+    const std::string alpha = name.substr(0, name.rfind('.') + 1) + "A";
+    if (input.picture.find(alpha) != nullptr) names.push_back(alpha);
+  }
+  return names;
+}
+
 /// The frame: what was loaded, and the results in the picture's own pixels.
 Frame frame_of(SurfaceInput& input, double mm_per_unit) {
   const std::vector<std::string> beauty = beauty_channels(input.roles);
@@ -118,7 +132,7 @@ void write_pictures(const FilterJob& job, const OutputFiles& files, SurfaceInput
     tile_map.emplace("--tile-map", files.tile_map);
     write_tile_map_png(tile_map->path(), picture.width(), picture.height(), stats.tiles, input.loaded.light);
   }
-  picture.write(files.output, job.compression);
+  picture.write(files.output, job.compression, channels_to_write(job.layers, input));
   if (preview) preview->commit();
   if (tile_map) tile_map->commit();
 }

@@ -144,6 +144,7 @@ FilterJob job_of(const FilterArguments& arguments) {
                 .reuse = arguments.reuse,
                 .stats = arguments.output.stats,
                 .compression = arguments.output.compression,
+                .layers = arguments.layers,
                 .device = arguments.device,
                 .command = {}};
   if (options.taps.tolerance > 0 && arguments.design.rank)  // a quality would take neither

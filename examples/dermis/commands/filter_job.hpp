@@ -16,6 +16,7 @@ struct FilterJob {
   bool reuse;
   bool stats;
   std::string compression;
+  OutputLayers layers;
   DeviceArguments device;
   std::string command;  ///< a command without the names of pictures and folders, for the record in the result
 };

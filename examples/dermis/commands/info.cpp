@@ -1,6 +1,7 @@
 // dermis info: what a picture holds, and what the filter would make of it.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <memory>
@@ -101,11 +102,28 @@ void find_surfaces(Info& info, const std::vector<NamedProfile>& profiles, const 
   }
 }
 
-std::size_t bytes_of_images(const LoadedFrame& loaded) {
-  const std::size_t inputs = loaded.light.size() + loaded.albedo.size() + loaded.depth.size() + loaded.material.size() +
-                             loaded.mask.size() + loaded.matte.size();
-  const std::size_t scattered = loaded.light.size();
-  return (inputs + scattered) * bytes_of(Format::f32);
+/// The images of frames of the picture, as load_images makes them; none if a role has the wrong channels for it.
+std::optional<FrameDescription> describe_frame(const Info& info, bool has_ids) {
+  for (const Role role : {Role::light, Role::albedo, Role::depth, Role::material, Role::mask, Role::matte}) {
+    const bool is_read = role != Role::material || has_ids;
+    const exr::ChannelSum& sum = info.roles[role];
+    const bool fits = std::all_of(sum.begin(), sum.end(),
+                                  [&](const auto& group) { return group.size() == exr::info_of(role).values; });
+    if (is_read && !fits) return std::nullopt;
+  }
+  const exr::Roles& roles = info.roles;
+  return FrameDescription{.depth = roles.has(Role::depth) || (info.camera && info.camera->axis),
+                          .material = has_ids,
+                          .mask = roles.has(Role::mask),
+                          .albedo = roles.has(Role::albedo),
+                          .matte = roles.has(Role::matte)};
+}
+
+/// Of the images that are read, and of the scattered light.
+std::size_t bytes_of_pixel(const FrameDescription& frame) {
+  const std::size_t rgb = 3 * (1 + std::size_t{frame.albedo} + 1);  // light, albedo, scattered light
+  const std::size_t single = std::size_t{frame.depth} + frame.material + frame.mask + frame.matte;
+  return (rgb + single) * bytes_of(Format::f32);
 }
 
 /// The memory that a run would need, if the roles are there and a device can tell.
@@ -115,14 +133,18 @@ std::optional<Memory> find_memory(const Info& info, const std::vector<NamedProfi
         profiles.empty() ? std::vector<NamedProfile>{{{}, presets().front().name, presets().front().profile}}
                          : profiles;
     require_roles(info.picture, info.roles, asked, Options{});
-    const LoadedFrame loaded = load_frame(info.picture, info.roles, info.camera.value_or(exr::FoundCamera{}), asked);
-    const Plan plan(Device::open(), materials_of(asked), FrameDescription::of(loaded.frame()));
-    std::size_t images = bytes_of_images(loaded);
+    const auto frames = describe_frame(info, have_ids(asked));
+    if (!frames) return std::nullopt;
+    std::size_t pixel_bytes = bytes_of_pixel(*frames);
     if (info.roles.has(Role::beauty)) {
       const Format format = info.picture.view(info.roles[Role::beauty].front()).layout.format;
-      images += 2 * 3 * bytes_of(format) * loaded.depth.size();  // read and written
+      pixel_bytes += 2 * 3 * bytes_of(format);  // read and written
     }
-    return Memory{plan.scratch_bytes(loaded.width, loaded.height), images};
+    const int width = info.picture.width();
+    const int height = info.picture.height();
+    const Plan plan(Device::open(), materials_of(asked), *frames);
+    return Memory{plan.scratch_bytes(width, height),
+                  pixel_bytes * static_cast<std::size_t>(width) * static_cast<std::size_t>(height)};
   } catch (const Error&) {
     return std::nullopt;
   }

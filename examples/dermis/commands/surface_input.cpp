@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cstdio>
+#include <future>
 
 #include "files/surface_pixels.hpp"
 
@@ -36,13 +37,18 @@ Frame SurfaceInput::frame(double mm_per_unit) const {
 
 SurfaceInput read_surface(const std::string& path, const SurfaceRequest& request, const Options& options,
                           bool needs_beauty) {
-  SurfaceInput input{exr::Picture::read(path), {}, {}, {}, {}};
+  constexpr std::size_t added_channels = 3;  // of the scattered light
+  SurfaceInput input{exr::Picture::read(path, added_channels), {}, {}, {}, {}};
   const exr::Picture& picture = input.picture;
   input.roles = exr::find_roles(picture, request.picture.roles, request.picture.layer);
   require_roles(picture, input.roles, request.profiles, options, !request.cryptomatte.empty());
   if (needs_beauty) exr::require(picture, input.roles, Role::beauty);
+  // The camera takes as long to find as the images take to load, and needs none of them.
+  auto images = std::async(std::launch::async,
+                           [&] { return load_images(picture, input.roles, request.profiles, request.cryptomatte); });
   input.camera = exr::find_camera(picture, input.roles, request.picture.camera);
-  input.loaded = load_frame(picture, input.roles, input.camera, request.profiles, request.cryptomatte);
+  input.loaded = images.get();
+  input.loaded.depth = load_depth_image(picture, input.roles, input.camera);
   if (request.lights) input.translucency = load_translucency_images(picture, input.roles);
   return input;
 }

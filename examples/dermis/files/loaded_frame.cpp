@@ -48,12 +48,11 @@ void require_roles(const exr::Picture& picture, const exr::Roles& roles, const s
   if (have_ids(profiles) && !has_cryptomatte) exr::require(picture, roles, Role::material);
 }
 
-LoadedFrame load_frame(const exr::Picture& picture, const exr::Roles& roles, const exr::FoundCamera& camera,
-                       const std::vector<NamedProfile>& profiles, const std::vector<std::string>& cryptomatte) {
+LoadedFrame load_images(const exr::Picture& picture, const exr::Roles& roles, const std::vector<NamedProfile>& profiles,
+                        const std::vector<std::string>& cryptomatte) {
   LoadedFrame loaded{picture.width(), picture.height(), {}, {}, {}, {}, {}, {}};
   loaded.light = load_values(picture, roles, Role::light, 3);
   loaded.albedo = load_values(picture, roles, Role::albedo, 3);
-  loaded.depth = checked(exr::load_depth(picture, roles, camera), picture, Role::depth, 1);
   loaded.mask = load_values(picture, roles, Role::mask, 1);
   loaded.matte = load_values(picture, roles, Role::matte, 1);
   if (!cryptomatte.empty()) {
@@ -64,6 +63,11 @@ LoadedFrame load_frame(const exr::Picture& picture, const exr::Roles& roles, con
     loaded.material = load_values(picture, roles, Role::material, 1);
   }
   return loaded;
+}
+
+std::vector<float> load_depth_image(const exr::Picture& picture, const exr::Roles& roles,
+                                    const exr::FoundCamera& camera) {
+  return checked(exr::load_depth(picture, roles, camera), picture, Role::depth, 1);
 }
 
 }  // namespace dermis::program

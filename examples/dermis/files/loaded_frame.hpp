@@ -32,10 +32,13 @@ struct LoadedFrame {
 void require_roles(const exr::Picture& picture, const exr::Roles& roles, const std::vector<NamedProfile>& profiles,
                    const Options& options, bool has_cryptomatte = false);
 
-/// The roles that the picture has, and the depth of its positions if it has no other; ids only if the profiles tell
-/// materials apart, from `cryptomatte` (NAME=ID) if that is not empty. Throws Error(input_unsupported) if a role has
-/// the wrong number of channels.
-LoadedFrame load_frame(const exr::Picture& picture, const exr::Roles& roles, const exr::FoundCamera& camera,
-                       const std::vector<NamedProfile>& profiles, const std::vector<std::string>& cryptomatte = {});
+/// The roles that the picture has but for depth; ids only if the profiles tell materials apart, from `cryptomatte`
+/// (NAME=ID) if that is not empty. Throws Error(input_unsupported) if a role has the wrong number of channels.
+LoadedFrame load_images(const exr::Picture& picture, const exr::Roles& roles, const std::vector<NamedProfile>& profiles,
+                        const std::vector<std::string>& cryptomatte);
+
+/// The depth of the picture, or that of its positions if it has no other. Throws as load_images.
+std::vector<float> load_depth_image(const exr::Picture& picture, const exr::Roles& roles,
+                                    const exr::FoundCamera& camera);
 
 }  // namespace dermis::program

@@ -1,28 +1,24 @@
 #include "files/picture_png.hpp"
 
-#include <OpenImageIO/color.h>
-#include <OpenImageIO/imagebuf.h>
-#include <OpenImageIO/imagebufalgo.h>
-#include <OpenImageIO/imageio.h>
-
 #include <cmath>
 #include <cstddef>
 #include <string>
 #include <vector>
 
 #include "dermis/error.hpp"
+#include "exr/image_library.hpp"
 
 namespace dermis::program {
 namespace {
 
+/// The curve of sRGB (IEC 61966-2-1) for scene-linear light.
+float srgb_of(float linear) {
+  return linear <= 0.0031308F ? 12.92F * linear : 1.055F * std::pow(linear, 1.0F / 2.4F) - 0.055F;
+}
+
 void write_png(const std::filesystem::path& path, int width, int height, const float* rgb) {
-  const auto output = OIIO::ImageOutput::create("png");
-  OIIO::ImageSpec spec(width, height, 3, OIIO::TypeDesc::UINT8);
-  spec.attribute("oiio:ColorSpace", "sRGB");
-  if (output && output->open(path.string(), spec) && output->write_image(OIIO::TypeDesc::FLOAT, rgb) && output->close())
-    return;
-  throw Error(ErrorCode::output, path.string(), output ? output->geterror() : OIIO::geterror(),
-              "a PNG file that can be written");
+  const std::string error = exr::image_library().write_png(path, width, height, rgb);
+  if (!error.empty()) throw Error(ErrorCode::output, path.string(), error, "a PNG file that can be written");
 }
 
 }  // namespace
@@ -31,19 +27,14 @@ void write_srgb_png(const std::filesystem::path& path, int width, int height, st
   std::vector<float> shown(rgb.size());
   for (std::size_t i = 0; i < rgb.size(); ++i) {
     const float value = std::isnan(rgb[i]) ? 0.0F : std::fmin(std::fmax(rgb[i], 0.0F), 1.0F);
-    shown[i] = OIIO::linear_to_sRGB(value);
+    shown[i] = srgb_of(value);
   }
   write_png(path, width, height, shown.data());
 }
 
 void write_heatmap_png(const std::filesystem::path& path, int width, int height, std::span<const float> values) {
-  OIIO::ImageBuf grey(OIIO::ImageSpec(width, height, 1, OIIO::TypeDesc::FLOAT));
-  grey.set_pixels(OIIO::ROI::All(), OIIO::TypeDesc::FLOAT, values.data());
-  const OIIO::ImageBuf coloured = OIIO::ImageBufAlgo::color_map(grey, 0, "inferno");
-  const OIIO::ROI all(0, width, 0, height, 0, 1, 0, 3);
-  std::vector<float> rgb(values.size() * 3);
-  if (coloured.has_error() || !coloured.get_pixels(all, OIIO::TypeDesc::FLOAT, rgb.data()))
-    throw Error(ErrorCode::output, path.string(), coloured.geterror(), "a heat map");
+  const std::vector<float> rgb = exr::image_library().heat_colours(width, height, values);
+  if (rgb.empty()) throw Error(ErrorCode::output, path.string(), "no colours for it", "a heat map");
   write_png(path, width, height, rgb.data());
 }
 
