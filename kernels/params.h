@@ -54,8 +54,8 @@ typedef long long Bytes;
 #define TILE_CURVED 5
 #define TILE_REUSED 6  // nothing within reach has changed since the frame before
 
-// No tap of the vertical pass lies more columns than this from its pixel, on a flat block and on a curved one, unless it
-// is rotated. Where a surface bends, its shear tells little of what lies farther away.
+// No tap of the vertical pass lies more columns than this from its pixel, on a flat block and on a curved one, unless
+// it is rotated. Where a surface bends, its shear tells little of what lies farther away.
 #define MOST_FLAT_SIDE 32
 #define MOST_CURVED_SIDE 6
 
