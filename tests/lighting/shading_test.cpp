@@ -133,7 +133,8 @@ TEST_CASE("lit frames are those of the oracle", "[shading]") {
   for (unsigned salt = 0; salt < 3; ++salt) {
     Random random(880 + salt);
     constexpr std::pair<int, int> sizes[] = {{1, 1}, {43, 19}, {7, 5}};
-    const auto [width, height] = sizes[salt % 3];
+    const int width = sizes[salt % 3].first;
+    const int height = sizes[salt % 3].second;
     Case its(random, width, height, random.coin());
     if (width > 10) its.add_highlight(random);
     CAPTURE(test_seed(), salt);
