@@ -172,7 +172,8 @@ Coefficients fit_difference(const CubicFit& fit, const CubicFit::Moments& its, c
                             double first_1) {
   constexpr double most = 16;
   const auto is_within = [&](const Coefficients& candidate) {
-    Coefficients below, above;
+    Coefficients below;
+    Coefficients above;
     for (std::size_t i = 0; i < 3; ++i) {
       below[i] = most * of_first[i] - candidate[i];
       above[i] = most * of_first[i] + candidate[i];

@@ -24,40 +24,50 @@ TermCurves make_term_curves(const Profile& profile, const ModelTerm& model, doub
 
 SurfaceWeights::SurfaceWeights(const SizedTaps& taps, const std::vector<TermCurves>& terms, double px_per_mm)
     : taps_(taps), terms_(terms), px_per_mm_(px_per_mm) {
-  constexpr double longest_of_correction = 4;
-  constexpr double longest = 1e4;
-  constexpr double largest_share = 1e4;
-  const std::vector<double>& offsets_px = taps.placed.offsets_px;
   followers_.reserve(rows() * functions());
   for (std::size_t row = 0; row < rows(); ++row) {
-    // A pair stands for the surface from half the way to one neighbour to half the way to the other.
-    const double before = row < 2 ? 0 : offsets_px[row - 2];
-    const double after = row == 0 ? 1 : row < offsets_px.size() ? offsets_px[row] : 2 * offsets_px[row - 1] - before;
-    const double its_length_mm = (after - before) / 2 / px_per_mm;
     const RadialPlace its_place = place(row, 1, 1);
     for (std::size_t t = 0; t < terms.size(); ++t) {
-      for (int c = 0; c < 3; ++c) {
-        Follower its;
-        const double weight = fitted(row, t, c);
-        const double density = value_at(row == 0 ? terms[t].centre : terms[t].falloff, c, its_place);
-        if (row == 0) {
-          if (terms[t].normalised && density > 0) its.length_mm = weight / density;
-        } else if (density != 0 && terms[t].normalised) {
-          // Weight and density may be nothing but rounding, of either sign.
-          const double length_mm = weight / density;
-          if (length_mm >= 0 && length_mm < longest * its_length_mm) its.length_mm = length_mm;
-        } else if (density != 0) {
-          its.length_mm = std::clamp(weight / density, 0.0, longest_of_correction * its_length_mm);
-          const double rest = weight - its.length_mm * density;
-          const double first = fitted(row, 0, c);
-          if (std::abs(rest) < largest_share * first) its.share = rest / first;
-        }
-        followers_.push_back(its);
-      }
+      for (int c = 0; c < 3; ++c) followers_.push_back(follower(row, t, c, its_place));
     }
   }
   on_plane_.resize(followers_.size());
   for (std::size_t row = 0; row < rows(); ++row) on_surface(row, 1, 1, &on_plane_[row * functions()]);
+}
+
+// A pair stands for the surface from half the way to one neighbour to half the way to the other.
+double SurfaceWeights::length_mm(std::size_t row) const {
+  const std::vector<double>& offsets = offsets_px();
+  const double before = row < 2 ? 0 : offsets[row - 2];
+  const double after = row < offsets.size() ? offsets[row] : 2 * offsets[row - 1] - before;
+  return (after - before) / 2 / px_per_mm_;
+}
+
+SurfaceWeights::Follower SurfaceWeights::follower(std::size_t row, std::size_t term, int channel,
+                                                  const RadialPlace& its_place) const {
+  constexpr double longest_of_correction = 4;
+  constexpr double longest = 1e4;
+  constexpr double largest_share = 1e4;
+  const TermCurves& curves = terms_[term];
+  const double weight = fitted(row, term, channel);
+  const double density = value_at(row == 0 ? curves.centre : curves.falloff, channel, its_place);
+  Follower its;
+  if (row == 0) {
+    if (curves.normalised && density > 0) its.length_mm = weight / density;
+    return its;
+  }
+  if (density == 0) return its;
+  const double length = weight / density;
+  if (curves.normalised) {
+    // Weight and density may be nothing but rounding, of either sign.
+    if (length >= 0 && length < longest * length_mm(row)) its.length_mm = length;
+    return its;
+  }
+  its.length_mm = std::clamp(length, 0.0, longest_of_correction * length_mm(row));
+  const double rest = weight - its.length_mm * density;
+  const double first = fitted(row, 0, channel);
+  if (std::abs(rest) < largest_share * first) its.share = rest / first;
+  return its;
 }
 
 double SurfaceWeights::fitted(std::size_t row, std::size_t term, int channel) const {

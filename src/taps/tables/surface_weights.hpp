@@ -53,6 +53,8 @@ class SurfaceWeights {
     double length_mm = 0;  ///< of a centre: its gain
     double share = 0;      ///< of the weight in the first term
   };
+  double length_mm(std::size_t row) const;
+  Follower follower(std::size_t row, std::size_t term, int channel, const RadialPlace& its_place) const;
   double distance_mm(std::size_t row) const;
   RadialPlace place(std::size_t row, double length, double distance) const;
 
