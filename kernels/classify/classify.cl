@@ -419,7 +419,7 @@ static inline int farthest_tap_of(global const struct BlockParams* block, global
   int farthest = 0;
   for (int m = 0; m < MATERIALS; ++m) {
     if (!(block->scattering[m / 32] >> (m % 32) & 1)) continue;
-    farthest = max(farthest, last_offset_of(materials + m, levels, px_per_mm, block_class));
+    farthest = max(farthest, last_offset_of(materials + m, levels, px_per_mm, block_class, ALL_TAPS));
   }
   return farthest;
 }

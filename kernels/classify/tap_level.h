@@ -15,11 +15,17 @@ static inline Step step_of(global const struct MaterialParams* its, float px_per
   return step;
 }
 
-// The offset of the farthest tap of a material, px.
+// Which taps of a material are asked for.
+#define ALL_TAPS 0
+#define ROTATED_TAPS 1
+
+// The offset of the farthest one of these taps of a material, px.
 static inline int last_offset_of(global const struct MaterialParams* its, global const struct TapLevelParams* levels,
-                                 float px_per_mm, int block_class) {
-  const int level = step_of(its, px_per_mm, block_class).level;
-  return level >= 0 ? levels[its->first_level + level].last_offset_px : 0;
+                                 float px_per_mm, int block_class, int which) {
+  const int number = step_of(its, px_per_mm, block_class).level;
+  if (number < 0) return 0;
+  global const struct TapLevelParams* level = levels + its->first_level + number;
+  return which == ROTATED_TAPS ? level->last_rotated_px : level->last_offset_px;
 }
 
 // The number of pairs in which all channels have a weight.

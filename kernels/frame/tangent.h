@@ -2,23 +2,35 @@
 #include "frame/surface.h"
 #include "frame/window.h"
 
+// The smaller one of two numbers of one sign, or 0.
+FORCED_INLINE vfloat minmod(vfloat a, vfloat b) {
+  const vfloat zero = (vfloat)(0.0f);
+  return higher(zero, lower(a, b)) + lower(zero, higher(a, b));
+}
+
 // Change of depth per pixel along (dx, dy), mm: the smaller one of the differences to both neighbours, 0 if they differ
-// in sign. A neighbour of another material does not count; without any the slope is 0.
-static inline vfloat depth_slope(const struct FrameParams* f, const Window* w, int x, int y, int dx, int dy) {
+// in sign. A neighbour of another material does not count; without any the slope is 0. Few vectors need the masks.
+FORCED_INLINE vfloat depth_slope(const struct FrameParams* f, const Window* w, int x, int y, int dx, int dy) {
   const size_t at = pixel_at(w, x, y);
-  const size_t before = y - dy < 0 ? at : pixel_at(w, x - dx, y - dy);
-  const size_t after = y + dy >= f->height ? at : pixel_at(w, x + dx, y + dy);
+  const int has_before = y - dy >= 0;
+  const int has_after = y + dy < f->height;
+  const size_t before = has_before ? pixel_at(w, x - dx, y - dy) : at;
+  const size_t after = has_after ? pixel_at(w, x + dx, y + dy) : at;
   const vfloat z = load_floats(w->depth + at);
   const vint m = load_bytes(w->material_ids + at) & MATERIAL_MASK;
-  const vint has_before =
-      AS_MASK((load_bytes(w->material_ids + before) & MATERIAL_MASK) == m) & (vint)(-(before != at));
-  const vint has_after = AS_MASK((load_bytes(w->material_ids + after) & MATERIAL_MASK) == m) & (vint)(-(after != at));
-  const vfloat to_before = select_or_zero(has_before, z - load_floats(w->depth + before));
-  const vfloat to_after = select_or_zero(has_after, load_floats(w->depth + after) - z);
-  const vfloat backward = select(to_after, to_before, has_before);
-  const vfloat forward = select(to_before, to_after, has_after);
-  const vfloat smaller = select(forward, backward, AS_MASK(fabs(backward) <= fabs(forward)));
-  return select_or_zero(AS_MASK(backward * forward > 0.0f), smaller);
+  const vint differs_before = (load_bytes(w->material_ids + before) & MATERIAL_MASK) ^ m;
+  const vint differs_after = (load_bytes(w->material_ids + after) & MATERIAL_MASK) ^ m;
+  vfloat backward = z - load_floats(w->depth + before);
+  vfloat forward = load_floats(w->depth + after) - z;
+  if (!has_before || !has_after || any_bit(differs_before | differs_after)) {
+    const vint counts_before = AS_MASK(differs_before == 0) & (vint)(-has_before);
+    const vint counts_after = AS_MASK(differs_after == 0) & (vint)(-has_after);
+    const vfloat to_before = select_or_zero(counts_before, backward);
+    const vfloat to_after = select_or_zero(counts_after, forward);
+    backward = select(to_after, to_before, counts_before);
+    forward = select(to_before, to_after, counts_after);
+  }
+  return minmod(backward, forward);
 }
 
 // Change of position with one pixel along x or y, mm.

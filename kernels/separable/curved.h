@@ -59,19 +59,11 @@ FORCED_INLINE vrgb load_tap_light(const Pass* s, int t, const Place* place) {
   return value;
 }
 
-FORCED_INLINE vrgb cubic(global const struct CubicWeight* its, vrgb t) {
-  const vrgb result = {t.r * fma(t.r, fma(t.r, (vfloat)(its->c[0]), (vfloat)(its->b[0])), (vfloat)(its->a[0])),
-                       t.g * fma(t.g, fma(t.g, (vfloat)(its->c[1]), (vfloat)(its->b[1])), (vfloat)(its->a[1])),
-                       t.b * fma(t.b, fma(t.b, (vfloat)(its->c[2]), (vfloat)(its->b[2])), (vfloat)(its->a[2]))};
-  return result;
-}
-
-// The same times a length, and of one nearness for all channels.
-FORCED_INLINE vrgb cubic_times(global const struct CubicWeight* its, vfloat t, vfloat length) {
-  const vfloat share = t * length;
-  const vrgb result = {share * fma(t, fma(t, (vfloat)(its->c[0]), (vfloat)(its->b[0])), (vfloat)(its->a[0])),
-                       share * fma(t, fma(t, (vfloat)(its->c[1]), (vfloat)(its->b[1])), (vfloat)(its->a[1])),
-                       share * fma(t, fma(t, (vfloat)(its->c[2]), (vfloat)(its->b[2])), (vfloat)(its->a[2]))};
+// A + t (B + t C) of each channel.
+FORCED_INLINE vrgb cubic_over_t(global const struct CubicWeight* its, vrgb t) {
+  const vrgb result = {fma(t.r, fma(t.r, (vfloat)(its->c[0]), (vfloat)(its->b[0])), (vfloat)(its->a[0])),
+                       fma(t.g, fma(t.g, (vfloat)(its->c[1]), (vfloat)(its->b[1])), (vfloat)(its->a[1])),
+                       fma(t.b, fma(t.b, (vfloat)(its->c[2]), (vfloat)(its->b[2])), (vfloat)(its->a[2]))};
   return result;
 }
 
@@ -85,31 +77,25 @@ FORCED_INLINE void add_tap(Sums* sums, const Target* own, global const struct Ne
                            const int clean) {
   // The square of the distance, see METHODS.md, plus the softening.
   const vfloat square = fma(own->spread, tap->z, (vfloat)(own->square_mm2));
+  const vfloat softening = (vfloat)(nearness->softening);
 #if PIXEL_WIDTH
   const vfloat distance2 =
       higher(fma(offset2, square, (tap->z - own->z) * (tap->ray_depth - own->ray_depth)), (vfloat)(0.0f));
   const vrgb k = own->reciprocal;
-  const vfloat softening = (vfloat)(nearness->softening);
   vrgb t = {nearness_of(nearness, fma(distance2, k.r * k.r, softening)),
             nearness_of(nearness, fma(distance2, k.g * k.g, softening)),
             nearness_of(nearness, fma(distance2, k.b * k.b, softening))};
-  if (!clean) t = select_or_zero_rgb(there, t);
-  const vrgb length = times(k, clean ? tap->segment : select_or_zero(there, tap->segment));
 #else
-  const vfloat softening = (vfloat)(nearness->softening);
-  const vfloat softened =
-      higher(fma(offset2, square, fma(tap->z - own->z, tap->ray_depth - own->ray_depth, softening)), softening);
-  vfloat t = nearness_of(nearness, softened);
-  if (!clean) t = select_or_zero(there, t);
-  const vfloat length = clean ? tap->segment : select_or_zero(there, tap->segment);
+  vrgb t = broadcast_rgb(nearness_of(
+      nearness,
+      higher(fma(offset2, square, fma(tap->z - own->z, tap->ray_depth - own->ray_depth, softening)), softening)));
 #endif
+  if (!clean) t = select_or_zero_rgb(there, t);
+  const vfloat segment = clean ? tap->segment : select_or_zero(there, tap->segment);
+  const vrgb share = product(t, times(own->reciprocal, segment));
 #pragma unroll
   for (int i = 0; i < TERMS; ++i) {
-#if PIXEL_WIDTH
-    const vrgb weight = product(cubic(weights + i, t), length);
-#else
-    const vrgb weight = cubic_times(weights + i, t, length);
-#endif
+    const vrgb weight = product(share, cubic_over_t(weights + i, t));
     const vrgb light = clean ? tap->light[i] : select_or_zero_rgb(there, tap->light[i]);
     sums->light[i] = multiply_add(weight, light, sums->light[i]);
     sums->weight[i] = sum_rgb(sums->weight[i], weight);
@@ -202,7 +188,7 @@ FORCED_INLINE void scatter_curved(vrgb* result, const struct FrameParams* f, con
     light[t] = load_term(s, t, at);
     sums.weight[t] = broadcast_rgb((vfloat)(0.0f));
     if (terms[t].normalised) {
-      const vrgb lost = cubic(weights + t, t_centre);
+      const vrgb lost = product(t_centre, cubic_over_t(weights + t, t_centre));
       const vfloat least = (vfloat)(LEAST_CENTRE_WEIGHT);
       sums.weight[t].r = higher(1.0f - lost.r, least);
       sums.weight[t].g = higher(1.0f - lost.g, least);

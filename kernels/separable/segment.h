@@ -1,31 +1,6 @@
 // The length of surface that a pixel spans along a pass, and the shear of the vertical pass over curved blocks.
 #include "frame/shear.h"
-#include "frame/surface.h"
-#include "frame/window.h"
-
-// The smaller one of two numbers of one sign, or 0.
-FORCED_INLINE vfloat minmod(vfloat a, vfloat b) {
-  const vfloat zero = (vfloat)(0.0f);
-  return higher(zero, lower(a, b)) + lower(zero, higher(a, b));
-}
-
-// Change of depth per pixel, mm: depth_slope of tangent.h, without masks where both neighbours are of the material.
-FORCED_INLINE vfloat quick_slope(const Window* w, vfloat z, vint m, size_t before, int has_before, size_t after,
-                                 int has_after) {
-  vfloat backward = z - load_floats(w->depth + before);
-  vfloat forward = load_floats(w->depth + after) - z;
-  const vint differs_before = (load_bytes(w->material_ids + before) & MATERIAL_MASK) ^ m;
-  const vint differs_after = (load_bytes(w->material_ids + after) & MATERIAL_MASK) ^ m;
-  if (!has_before || !has_after || any_bit(differs_before | differs_after)) {
-    const vint counts_before = AS_MASK(differs_before == 0) & (vint)(-has_before);
-    const vint counts_after = AS_MASK(differs_after == 0) & (vint)(-has_after);
-    const vfloat to_before = select_or_zero(counts_before, backward);
-    const vfloat to_after = select_or_zero(counts_after, forward);
-    backward = select(to_after, to_before, counts_before);
-    forward = select(to_before, to_after, counts_after);
-  }
-  return minmod(backward, forward);
-}
+#include "frame/tangent.h"
 
 // The surface in V pixels.
 typedef struct {
@@ -37,22 +12,18 @@ typedef struct {
 FORCED_INLINE Segment segment_at(const struct FrameParams* f, const Window* w, int x, int y, int axis) {
   const size_t at = pixel_at(w, x, y);
   const vfloat z = load_floats(w->depth + at);
-  const vint m = load_bytes(w->material_ids + at) & MATERIAL_MASK;
   const Points p = points_at(f, z, x, y);
-  Segment result = {(vfloat)(0.0f), (vint)(0), AS_MASK(m != 0)};
+  Segment result = {(vfloat)(0.0f), (vint)(0), AS_MASK((load_bytes(w->material_ids + at) & MATERIAL_MASK) != 0)};
   vfloat squared;
   vfloat slope_x = (vfloat)(0.0f);
-  if (axis == 0 || SHEARED) slope_x = quick_slope(w, z, m, at - 1, 1, at + 1, 1);
+  if (axis == 0 || SHEARED) slope_x = depth_slope(f, w, x, y, 1, 0);
   const vfloat size_x = fma(z, (vfloat)(f->slope_x), (vfloat)(f->mm_per_px_x));
   const vfloat along_x = fma(p.x_per_z, slope_x, size_x);
   const vfloat squared_x = fma(along_x, along_x, slope_x * slope_x * fma(p.y_per_z, p.y_per_z, (vfloat)(1.0f)));
   if (axis == 0) {
     squared = squared_x;
   } else {
-    const int has_before = y > 0;
-    const int has_after = y + 1 < f->height;
-    const vfloat slope_y = quick_slope(w, z, m, has_before ? pixel_at(w, x, y - 1) : at, has_before,
-                                       has_after ? pixel_at(w, x, y + 1) : at, has_after);
+    const vfloat slope_y = depth_slope(f, w, x, y, 0, 1);
     const vfloat size_y = fma(z, (vfloat)(f->slope_y), (vfloat)(f->mm_per_px_y));
     const vfloat along_y = fma(p.y_per_z, slope_y, size_y);
 #if SHEARED

@@ -24,40 +24,21 @@ typedef struct {
   int y_begin, y_end;
 } Box;
 
-// The offset of the farthest tap of a pass in the blocks of a box, px.
-SHARED int farthest_tap(const TileRun* run, Box box, int axis) {
+// The offset of the farthest one of these taps of a pass in the blocks of a box, px.
+SHARED int farthest_tap(const TileRun* run, Box box, int axis, int which) {
   const Tables* tables = run->tables;
   int farthest = 0;
   for (int block_y = box.y_begin / BLOCK; block_y * BLOCK < box.y_end; ++block_y) {
     for (int block_x = box.x_begin / BLOCK; block_x * BLOCK < box.x_end; ++block_x) {
       const struct BlockPass pass = block_pass(run->f, run->tables, block_x, block_y, axis);
       for (int m = 0; m < MATERIALS; ++m) {
-        farthest =
-            max(farthest, last_offset_of(tables->materials + m, tables->levels, pass.px_per_mm, pass.block_class));
+        farthest = max(farthest,
+                       last_offset_of(tables->materials + m, tables->levels, pass.px_per_mm, pass.block_class, which));
       }
     }
   }
   return farthest;
 }
-
-#if JITTER
-// The offset of the farthest tap that is rotated.
-SHARED int farthest_rotated_tap(const TileRun* run, Box box, int axis) {
-  const Tables* tables = run->tables;
-  int farthest = 0;
-  for (int block_y = box.y_begin / BLOCK; block_y * BLOCK < box.y_end; ++block_y) {
-    for (int block_x = box.x_begin / BLOCK; block_x * BLOCK < box.x_end; ++block_x) {
-      const struct BlockPass pass = block_pass(run->f, run->tables, block_x, block_y, axis);
-      for (int m = 0; m < MATERIALS; ++m) {
-        const int level = step_of(tables->materials + m, pass.px_per_mm, pass.block_class).level;
-        if (level < 0) continue;
-        farthest = max(farthest, tables->levels[tables->materials[m].first_level + level].last_rotated_px);
-      }
-    }
-  }
-  return farthest;
-}
-#endif
 
 // The columns between a pixel and the tap of the vertical pass that is farthest to its side, in the blocks of a box, if
 // no tap is more than `reach` rows away.
@@ -162,10 +143,10 @@ static inline int turned_px(const struct FrameParams* f, int reach) {
 static inline Windows windows_of(const TileRun* run, Box own, global uchar* memory) {
   const struct FrameParams* f = run->f;
   const struct TileMemory* layout = run->layout;
-  const int reach_y = farthest_tap(run, own, 1);
+  const int reach_y = farthest_tap(run, own, 1, ALL_TAPS);
   // A tap that leaves its axis needs the horizontal pass of the pixels that it falls on.
 #if JITTER
-  const int side_px = turned_px(f, farthest_rotated_tap(run, own, 1));
+  const int side_px = turned_px(f, farthest_tap(run, own, 1, ROTATED_TAPS));
   const int rows_px = max(reach_y, side_px);
 #else
   const int side_px = farthest_side(run, own, reach_y);
@@ -173,9 +154,9 @@ static inline Windows windows_of(const TileRun* run, Box own, global uchar* memo
 #endif
   const Box computed = {max(own.x_begin - side_px, 0) & ~(BLOCK - 1), min(own.x_end + side_px, f->width),
                         max(own.y_begin - rows_px, 0), min(own.y_end + rows_px, f->height)};
-  int reach_x = farthest_tap(run, computed, 0);
+  int reach_x = farthest_tap(run, computed, 0, ALL_TAPS);
 #if JITTER
-  const int margin_px = turned_px(f, farthest_rotated_tap(run, computed, 0));
+  const int margin_px = turned_px(f, farthest_tap(run, computed, 0, ROTATED_TAPS));
   reach_x = max(reach_x, margin_px);
 #else
   const int margin_px = 0;

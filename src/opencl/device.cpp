@@ -19,7 +19,7 @@ std::string type_name(cl_device_type type) {
 }
 
 /// Lanes that suit the device, of the widths that the kernels know. Processors with vectors of 8 floats are faster by
-/// 16, two vectors at a time: they take 0.8 to 0.9 of the time for passes over surfaces, and 0.85 to 1 for textures
+/// 16, two vectors at a time: they take 0.80 to 0.93 of the time for passes over surfaces, and 0.86 to 1 for textures
 /// (AVX2, measured).
 int kernel_vector_width(const cl::Device& device) {
   const auto native = static_cast<int>(device.getInfo<CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT>());
