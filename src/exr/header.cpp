@@ -66,9 +66,22 @@ void check_flags(const fs::path& path, std::uint32_t flags) {
   if ((flags & deep_flag) != 0) refuse(path, "a deep picture", "a flat one");
 }
 
+/// The attributes of the next part; none at the end of a list of parts.
+Header read_part(HeaderReader& reader, const fs::path& path) {
+  Header attributes;
+  for (std::string name = reader.text(); !name.empty(); name = reader.text()) {
+    std::string type = reader.text();
+    std::string value = reader.bytes(reader.u32());
+    attributes.push_back({std::move(name), std::move(type), std::move(value)});
+    if (!has_right_size(attributes.back())) damaged(path, "size of attribute " + escaped(attributes.back().name));
+    if (attributes.size() > most_attributes) damaged(path, "more than 10000 attributes");
+  }
+  return attributes;
+}
+
 }  // namespace
 
-std::vector<HeaderAttribute> read_header(const fs::path& path) {
+std::vector<Header> read_headers(const fs::path& path) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
   if (!fs::exists(status)) {
@@ -81,17 +94,15 @@ std::vector<HeaderAttribute> read_header(const fs::path& path) {
   const std::uint32_t flags = reader.u32();
   check_flags(path, flags);
 
-  std::vector<HeaderAttribute> attributes;
-  for (std::string name = reader.text(); !name.empty(); name = reader.text()) {
-    std::string type = reader.text();
-    std::string value = reader.bytes(reader.u32());
-    attributes.push_back({std::move(name), std::move(type), std::move(value)});
-    if (!has_right_size(attributes.back())) damaged(path, "size of attribute " + escaped(attributes.back().name));
-    if (attributes.size() > most_attributes) damaged(path, "more than 10000 attributes");
+  std::vector<Header> parts = {read_part(reader, path)};
+  while ((flags & multi_part_flag) != 0) {
+    Header part = read_part(reader, path);
+    if (part.empty()) break;
+    parts.push_back(std::move(part));
+    if (parts.size() > static_cast<std::size_t>(max_channels)) damaged(path, "more than 1024 parts");
   }
-  if ((flags & multi_part_flag) != 0 && reader.bytes(1)[0] != '\0') refuse(path, "several parts", "one part");
-  check_header(path, attributes, reader.file_bytes());
-  return attributes;
+  check_headers(path, parts, reader.file_bytes());
+  return parts;
 }
 
 }  // namespace dermis::exr

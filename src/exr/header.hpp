@@ -21,8 +21,10 @@ inline constexpr int max_channels = 1024;
 inline constexpr int max_coordinate = 1 << 29;  // sums of two stay within int
 inline constexpr std::size_t max_name = 255;    // of an attribute, a type or a channel
 
-/// The attributes of a flat file of one part that is within the limits. Throws Error(input_missing) if it cannot be
+using Header = std::vector<HeaderAttribute>;
+
+/// The attributes of each part of a flat file that is within the limits. Throws Error(input_missing) if it cannot be
 /// opened, Error(input_unsupported) otherwise.
-std::vector<HeaderAttribute> read_header(const std::filesystem::path& path);
+std::vector<Header> read_headers(const std::filesystem::path& path);
 
 }  // namespace dermis::exr

@@ -53,23 +53,29 @@ struct Box {
   std::int64_t height;
 };
 
+struct PartSize {
+  std::uint64_t chunks;
+  std::size_t channels;
+};
+
+void check_channel_count(const std::filesystem::path& path, std::size_t channels) {
+  if (channels == 0 || channels > static_cast<std::size_t>(max_channels))
+    refuse(path, std::to_string(channels) + " channels", "1 to " + std::to_string(max_channels));
+}
+
 /// The facts of a header that decide how much memory a reader will ask for.
 class HeaderCheck {
  public:
-  HeaderCheck(const std::filesystem::path& path, const std::vector<HeaderAttribute>& attributes)
-      : path_(path), attributes_(attributes) {}
+  HeaderCheck(const std::filesystem::path& path, const Header& attributes) : path_(path), attributes_(attributes) {}
 
-  void run(std::uint64_t file_bytes) const {
+  /// The blocks of pixels that the part has, and its channels.
+  PartSize run() const {
     if (const HeaderAttribute* type = find("type"); type != nullptr && type->value.starts_with("deep")) {
       refuse(path_, "a deep picture", "a flat one");
     }
     box("displayWindow");
-    check_channels();
-    const std::uint64_t chunks = chunk_count(box("dataWindow"));
-    if (file_bytes / smallest_chunk_bytes < chunks) {
-      refuse(path_, std::to_string(file_bytes) + " bytes for " + std::to_string(chunks) + " blocks of pixels",
-             "a complete OpenEXR file");
-    }
+    const std::size_t channels = count_channels();
+    return {chunk_count(box("dataWindow")), channels};
   }
 
  private:
@@ -103,7 +109,7 @@ class HeaderCheck {
   }
 
   /// A channel list is, for each channel: name, 0, type (4), flags (4), sampling in x (4) and y (4); then a 0.
-  void check_channels() const {
+  std::size_t count_channels() const {
     std::string_view list = value_of("channels", "chlist", 1);
     std::set<std::string_view> names;
     while (!list.empty() && list[0] != '\0') {
@@ -115,9 +121,8 @@ class HeaderCheck {
       list.remove_prefix(end + 17);
     }
     if (list.size() != 1) damaged(path_, "channels");
-    if (names.empty() || names.size() > static_cast<std::size_t>(max_channels)) {
-      refuse(path_, std::to_string(names.size()) + " channels", "1 to " + std::to_string(max_channels));
-    }
+    check_channel_count(path_, names.size());
+    return names.size();
   }
 
   void check_channel(std::string_view name, std::string_view facts) const {
@@ -152,7 +157,7 @@ class HeaderCheck {
   }
 
   const std::filesystem::path& path_;
-  const std::vector<HeaderAttribute>& attributes_;
+  const Header& attributes_;
 };
 
 }  // namespace
@@ -185,9 +190,18 @@ bool has_right_size(const HeaderAttribute& attribute) {
   return it == fixed_sizes.end() || it->bytes == attribute.value.size();
 }
 
-void check_header(const std::filesystem::path& path, const std::vector<HeaderAttribute>& attributes,
-                  std::uint64_t file_bytes) {
-  HeaderCheck(path, attributes).run(file_bytes);
+void check_headers(const std::filesystem::path& path, const std::vector<Header>& parts, std::uint64_t file_bytes) {
+  PartSize whole{0, 0};
+  for (const Header& part : parts) {
+    const PartSize size = HeaderCheck(path, part).run();
+    whole.chunks += size.chunks;
+    whole.channels += size.channels;
+  }
+  check_channel_count(path, whole.channels);
+  if (file_bytes / smallest_chunk_bytes < whole.chunks) {
+    refuse(path, std::to_string(file_bytes) + " bytes for " + std::to_string(whole.chunks) + " blocks of pixels",
+           "a complete OpenEXR file");
+  }
 }
 
 }  // namespace dermis::exr

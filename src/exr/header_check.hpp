@@ -20,9 +20,8 @@ std::uint32_t little_endian(std::string_view bytes);
 /// False if the type of the attribute has a size and its value another.
 bool has_right_size(const HeaderAttribute& attribute);
 
-/// Throws Error(input_unsupported) unless a file with these attributes and so many bytes is flat, within the limits,
-/// and can be complete.
-void check_header(const std::filesystem::path& path, const std::vector<HeaderAttribute>& attributes,
-                  std::uint64_t file_bytes);
+/// Throws Error(input_unsupported) unless a file of these parts and so many bytes is flat, within the limits, and can
+/// be complete.
+void check_headers(const std::filesystem::path& path, const std::vector<Header>& parts, std::uint64_t file_bytes);
 
 }  // namespace dermis::exr

@@ -23,10 +23,13 @@ class PictureAttributes {
   virtual ~PictureAttributes() = default;
   virtual double pixel_aspect() const = 0;
   virtual void set_text(std::string_view name, std::string_view value) = 0;
+  virtual std::shared_ptr<PictureAttributes> copy() const = 0;
 };
 
-/// All that a file says of a picture but for its pixels.
-struct PictureDescription {
+/// All that a file says of one of its parts but for its pixels.
+struct PartDescription {
+  std::string name;  ///< empty if the file has one part without a name
+  std::string view;  ///< of a stereo picture, or empty
   Window data;
   Window display;
   std::string compression;
@@ -34,20 +37,23 @@ struct PictureDescription {
   std::shared_ptr<PictureAttributes> attributes;
 };
 
-/// An open file whose rows are read. Functions throw std::runtime_error that says what is wrong with the file.
+/// An open file. Functions throw std::runtime_error that says what is wrong with the file.
 class PictureReader {
  public:
   virtual ~PictureReader() = default;
-  virtual const PictureDescription& description() const = 0;
-  virtual int tile_height() const = 0;  ///< 0 if the file is not in tiles
-  /// Reads packed rows. They are whole tiles, if there are tiles, or end with the picture.
-  virtual void read_rows(int first_row, int rows, std::byte* packed) = 0;
+  virtual std::size_t parts() const = 0;
+  virtual const PartDescription& description(std::size_t part) const = 0;
+  virtual int tile_height(std::size_t part) const = 0;  ///< 0 if the part is not in tiles
+  /// Reads packed rows of a part. They are whole tiles, if there are tiles, or end with the part.
+  virtual void read_rows(std::size_t part, int first_row, int rows, std::byte* packed) = 0;
 };
 
-/// A file whose rows are written from top to bottom. Functions throw as those of PictureReader.
+/// A file whose parts are written one after the other, and their rows from top to bottom. Functions throw as those of
+/// PictureReader.
 class PictureWriter {
  public:
   virtual ~PictureWriter() = default;
+  virtual void begin_part(std::size_t part) = 0;
   virtual void write_rows(int first_row, int rows, const std::byte* packed) = 0;
   virtual void close() = 0;
 };
@@ -58,13 +64,15 @@ class ImageLibrary {
 
   virtual std::shared_ptr<PictureAttributes> no_attributes() const = 0;
 
-  /// `header` holds the attributes of the file, so that those which OpenImageIO makes up are left out. Throws as
+  /// `headers` hold the attributes of each part, so that those which OpenImageIO makes up are left out. Throws as
   /// PictureReader.
   virtual std::unique_ptr<PictureReader> open(const std::filesystem::path& path,
-                                              std::span<const HeaderAttribute> header) const = 0;
+                                              std::span<const Header> headers) const = 0;
 
-  /// A file that takes the bytes of a stream, which outlives it. Throws as PictureWriter.
-  virtual std::unique_ptr<PictureWriter> create(std::FILE* stream, const PictureDescription& description) const = 0;
+  /// A file whose bytes go to a stream, which outlives it, or, if there are several parts, to the file at `path`, which
+  /// is that of the stream. Throws as PictureWriter.
+  virtual std::unique_ptr<PictureWriter> create(std::FILE* stream, const std::filesystem::path& path,
+                                                std::span<const PartDescription> parts) const = 0;
 
   /// Writes packed RGB, 0..1 in sRGB, as a PNG file of 8 bits. Empty if it worked, else what went wrong.
   virtual std::string write_png(const std::filesystem::path& path, int width, int height, const float* rgb) const = 0;

@@ -15,6 +15,7 @@
 namespace dermis::exr {
 namespace {
 
+constexpr const char* part_name = "oiio:subimagename";
 constexpr const char* dwa_level = "openexr:dwaCompressionLevel";
 
 struct SpecAttributes final : PictureAttributes {
@@ -27,6 +28,7 @@ struct SpecAttributes final : PictureAttributes {
   void set_text(std::string_view name, std::string_view value) override {
     spec.attribute({name.data(), name.size()}, OIIO::string_view(value.data(), value.size()));
   }
+  std::shared_ptr<PictureAttributes> copy() const override { return std::make_shared<SpecAttributes>(spec); }
 };
 
 Format format_of(OIIO::TypeDesc type) {
@@ -61,14 +63,14 @@ std::vector<ChannelName> channels_of(const OIIO::ImageSpec& spec) {
   return channels;
 }
 
-bool has_attribute(std::span<const HeaderAttribute> header, std::string_view name) {
+bool has_attribute(const Header& header, std::string_view name) {
   return std::any_of(header.begin(), header.end(),
                      [name](const HeaderAttribute& attribute) { return attribute.name == name; });
 }
 
 /// The part of a file's description that the next file keeps: it has no channels, no tiles and no attributes that the
 /// reader made up.
-OIIO::ImageSpec kept_attributes(OIIO::ImageSpec spec, std::span<const HeaderAttribute> header) {
+OIIO::ImageSpec kept_attributes(OIIO::ImageSpec spec, const Header& header) {
   spec.nchannels = 0;
   spec.channelnames.clear();
   spec.channelformats.clear();
@@ -77,15 +79,18 @@ OIIO::ImageSpec kept_attributes(OIIO::ImageSpec spec, std::span<const HeaderAttr
     spec.erase_attribute("textureformat");  // would make a mip map of it
   }
   spec.tile_width = spec.tile_height = spec.tile_depth = 0;
-  for (const char* name : {"compression", "openexr:lineOrder", "openexr:levelmode", "openexr:roundingmode"}) {
+  for (const char* name : {"compression", "openexr:lineOrder", "openexr:levelmode", "openexr:roundingmode",
+                           "oiio:subimages", "openexr:chunkCount"}) {
     spec.erase_attribute(name);
   }
   if (!has_attribute(header, "ResolutionUnit")) spec.erase_attribute("ResolutionUnit");
   return spec;
 }
 
-PictureDescription description_of(const OIIO::ImageSpec& spec, std::span<const HeaderAttribute> header) {
-  return {.data = {spec.x, spec.y, spec.width, spec.height},
+PartDescription description_of(const OIIO::ImageSpec& spec, const Header& header) {
+  return {.name = std::string(spec.get_string_attribute(part_name)),
+          .view = std::string(spec.get_string_attribute("view")),
+          .data = {spec.x, spec.y, spec.width, spec.height},
           .display = {spec.full_x, spec.full_y, spec.full_width, spec.full_height},
           .compression = std::string(spec.get_string_attribute("compression", "zip")),
           .channels = channels_of(spec),
@@ -94,34 +99,45 @@ PictureDescription description_of(const OIIO::ImageSpec& spec, std::span<const H
 
 class OpenedPicture final : public PictureReader {
  public:
-  OpenedPicture(const std::filesystem::path& path, std::span<const HeaderAttribute> header)
+  OpenedPicture(const std::filesystem::path& path, std::span<const Header> headers)
       : input_(OIIO::ImageInput::create("openexr")) {
     if (!input_) throw std::runtime_error(OIIO::geterror());
-    if (!input_->open(path.string(), spec_)) throw std::runtime_error(input_->geterror());
-    description_ = description_of(spec_, header);
+    OIIO::ImageSpec first;
+    if (!input_->open(path.string(), first)) throw std::runtime_error(input_->geterror());
+    for (std::size_t part = 0; part < headers.size(); ++part) {
+      specs_.push_back(input_->spec(static_cast<int>(part)));
+      if (specs_.back().undefined()) throw std::runtime_error("part " + std::to_string(part) + " cannot be read");
+      descriptions_.push_back(description_of(specs_.back(), headers[part]));
+    }
   }
 
-  const PictureDescription& description() const override { return description_; }
+  std::size_t parts() const override { return specs_.size(); }
 
-  int tile_height() const override { return spec_.tile_width > 0 ? spec_.tile_height : 0; }
+  const PartDescription& description(std::size_t part) const override { return descriptions_[part]; }
 
-  void read_rows(int first_row, int rows, std::byte* packed) override {
-    const int y = spec_.y + first_row;
-    const bool ok = spec_.tile_width > 0
-                        ? input_->read_tiles(0, 0, spec_.x, spec_.x + spec_.width, y, y + rows, 0, 1, 0,
-                                             spec_.nchannels, OIIO::TypeUnknown, packed)
-                        : input_->read_scanlines(0, 0, y, y + rows, 0, 0, spec_.nchannels, OIIO::TypeUnknown, packed);
+  int tile_height(std::size_t part) const override {
+    return specs_[part].tile_width > 0 ? specs_[part].tile_height : 0;
+  }
+
+  void read_rows(std::size_t part, int first_row, int rows, std::byte* packed) override {
+    const OIIO::ImageSpec& spec = specs_[part];
+    const int index = static_cast<int>(part);
+    const int y = spec.y + first_row;
+    const bool ok = spec.tile_width > 0 ? input_->read_tiles(index, 0, spec.x, spec.x + spec.width, y, y + rows, 0, 1,
+                                                             0, spec.nchannels, OIIO::TypeUnknown, packed)
+                                        : input_->read_scanlines(index, 0, y, y + rows, 0, 0, spec.nchannels,
+                                                                 OIIO::TypeUnknown, packed);
     if (!ok) throw std::runtime_error(input_->geterror());
   }
 
  private:
   Quiet quiet_;
   std::unique_ptr<OIIO::ImageInput> input_;
-  OIIO::ImageSpec spec_;
-  PictureDescription description_;
+  std::vector<OIIO::ImageSpec> specs_;
+  std::vector<PartDescription> descriptions_;
 };
 
-OIIO::ImageSpec spec_to_write(const PictureDescription& description) {
+OIIO::ImageSpec spec_to_write(const PartDescription& description) {
   OIIO::ImageSpec spec = static_cast<const SpecAttributes&>(*description.attributes).spec;
   const Window& data = description.data;
   const Window& display = description.display;
@@ -138,6 +154,7 @@ OIIO::ImageSpec spec_to_write(const PictureDescription& description) {
     spec.channelnames.push_back(channel.name);
     spec.channelformats.push_back(type_of(channel.format));
   }
+  if (!description.name.empty()) spec.attribute(part_name, description.name);
   const std::string& compression = description.compression;
   const float level = spec.get_float_attribute(dwa_level, 0.0F);
   const bool keeps_level = compression.starts_with("dwa") && level >= 1.0F;
@@ -150,18 +167,35 @@ OIIO::ImageSpec spec_to_write(const PictureDescription& description) {
   return spec;
 }
 
+std::vector<OIIO::ImageSpec> specs_to_write(std::span<const PartDescription> parts) {
+  std::vector<OIIO::ImageSpec> specs;
+  for (const PartDescription& part : parts) specs.push_back(spec_to_write(part));
+  return specs;
+}
+
 class CreatedPicture final : public PictureWriter {
  public:
-  CreatedPicture(std::FILE* stream, const PictureDescription& description)
-      : spec_(spec_to_write(description)),
+  CreatedPicture(std::FILE* stream, const std::filesystem::path& path, std::span<const PartDescription> parts)
+      : path_(path.string()),
+        specs_(specs_to_write(parts)),
         proxy_(stream, OIIO::Filesystem::IOProxy::Write),
         output_(OIIO::ImageOutput::create("openexr")) {
     if (!output_) throw std::runtime_error(OIIO::geterror());
-    check(output_->set_ioproxy(&proxy_) && output_->open("picture.exr", spec_));
+    // OpenImageIO 2.4 writes several parts past the proxy.
+    if (parts.size() == 1) check(output_->set_ioproxy(&proxy_));
+  }
+
+  void begin_part(std::size_t part) override {
+    const int count = static_cast<int>(specs_.size());
+    if (part > 0)
+      check(output_->open(path_, specs_[part], OIIO::ImageOutput::AppendSubimage));
+    else
+      check(count > 1 ? output_->open(path_, count, specs_.data()) : output_->open(path_, specs_[0]));
+    first_row_ = specs_[part].y;
   }
 
   void write_rows(int first_row, int rows, const std::byte* packed) override {
-    const int y = spec_.y + first_row;
+    const int y = first_row_ + first_row;
     check(output_->write_scanlines(y, y + rows, 0, OIIO::TypeUnknown, packed));
   }
 
@@ -173,9 +207,11 @@ class CreatedPicture final : public PictureWriter {
   }
 
   Quiet quiet_;
-  OIIO::ImageSpec spec_;
+  std::string path_;
+  std::vector<OIIO::ImageSpec> specs_;
   OIIO::Filesystem::IOFile proxy_;
   std::unique_ptr<OIIO::ImageOutput> output_;
+  int first_row_ = 0;
 };
 
 class OpenImageIO final : public ImageLibrary {
@@ -185,12 +221,13 @@ class OpenImageIO final : public ImageLibrary {
   }
 
   std::unique_ptr<PictureReader> open(const std::filesystem::path& path,
-                                      std::span<const HeaderAttribute> header) const override {
-    return std::make_unique<OpenedPicture>(path, header);
+                                      std::span<const Header> headers) const override {
+    return std::make_unique<OpenedPicture>(path, headers);
   }
 
-  std::unique_ptr<PictureWriter> create(std::FILE* stream, const PictureDescription& description) const override {
-    return std::make_unique<CreatedPicture>(stream, description);
+  std::unique_ptr<PictureWriter> create(std::FILE* stream, const std::filesystem::path& path,
+                                        std::span<const PartDescription> parts) const override {
+    return std::make_unique<CreatedPicture>(stream, path, parts);
   }
 
   std::string write_png(const std::filesystem::path& path, int width, int height, const float* rgb) const override {

@@ -3,7 +3,9 @@
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "dermis/error.hpp"
 #include "dermis/exr.hpp"
@@ -93,30 +95,53 @@ void convert(const std::byte* from, std::size_t pixel_bytes, std::span<float> to
   }
 }
 
+/// Lists a new channel in the only part, or, where a file has several, in one of its own that is named by what stands
+/// before the last dot.
+void add_to_part(std::vector<Part>& parts, const Window& data, const std::string& name) {
+  if (parts.size() == 1) {
+    parts.front().channels.push_back({name, name});
+    return;
+  }
+  const std::size_t dot = name.rfind('.');
+  const std::string part_name = name.substr(0, dot);
+  auto part =
+      std::find_if(parts.begin(), parts.end(), [&](const Part& other) { return other.description.name == part_name; });
+  if (part == parts.end()) {
+    PartDescription description = parts.front().description;
+    description.name = part_name;
+    description.data = data;
+    description.attributes = description.attributes->copy();
+    part = parts.insert(parts.end(), Part{std::move(description), {}});
+  }
+  part->channels.push_back({name, dot == std::string::npos ? name : name.substr(dot + 1)});
+}
+
 }  // namespace
 
 Picture::Picture(Window data, Window display) {
   check_window("data window", data);
   check_window("display window", display);
-  state_ = std::make_unique<State>(
-      State{{data, display, "zip", {}, image_library().no_attributes()}, PixelBlock(data.width, data.height, {})});
+  state_ =
+      std::make_unique<State>(State{{Part{{{}, {}, data, display, "zip", {}, image_library().no_attributes()}, {}}},
+                                    data,
+                                    PixelBlock(data.width, data.height, {})});
 }
 
 Picture::~Picture() = default;
 Picture::Picture(Picture&&) noexcept = default;
 Picture& Picture::operator=(Picture&&) noexcept = default;
 
-int Picture::width() const { return state_->description.data.width; }
+int Picture::width() const { return state_->data.width; }
 
-int Picture::height() const { return state_->description.data.height; }
+int Picture::height() const { return state_->data.height; }
 
-Window Picture::data_window() const { return state_->description.data; }
+Window Picture::data_window() const { return state_->data; }
 
-Window Picture::display_window() const { return state_->description.display; }
+Window Picture::display_window() const { return state_->parts.front().description.display; }
 
-double Picture::pixel_aspect() const { return state_->description.attributes->pixel_aspect(); }
+double Picture::pixel_aspect() const { return state_->parts.front().description.attributes->pixel_aspect(); }
 
-std::string Picture::compression() const { return state_->description.compression; }
+std::string Picture::compression() const { return state_->parts.front().description.compression; }
 
 std::span<const Channel> Picture::channels() const { return state_->pixels.channels(); }
 
@@ -157,7 +182,9 @@ void Picture::add_channels(std::span<const std::string> names, Format format) {
   if (count > static_cast<std::size_t>(max_channels)) {
     throw Error(ErrorCode::usage, "channels", std::to_string(count), "at most " + std::to_string(max_channels));
   }
-  if (!more.empty()) state_->pixels.add(more);
+  if (more.empty()) return;
+  state_->pixels.add(more);
+  for (const ChannelName& channel : more) add_to_part(state_->parts, state_->data, channel.name);
 }
 
 Image Picture::view(std::span<const std::string> names) const {
@@ -172,7 +199,7 @@ void Picture::set_attribute(std::string_view name, std::string_view value) {
   if (name.empty() || name.size() > max_name || name.find('\0') != std::string_view::npos) {
     throw Error(ErrorCode::usage, "name of an attribute", '"' + escaped(name) + '"', "1 to 255 characters");
   }
-  state_->description.attributes->set_text(name, value);
+  state_->parts.front().description.attributes->set_text(name, value);
 }
 
 }  // namespace dermis::exr

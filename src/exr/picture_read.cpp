@@ -1,13 +1,18 @@
 #include <algorithm>
+#include <cstdint>
 #include <exception>
 #include <memory>
+#include <stdexcept>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "dermis/error.hpp"
 #include "dermis/exr.hpp"
 #include "exr/header.hpp"
 #include "exr/image_library.hpp"
 #include "exr/message_text.hpp"
+#include "exr/part_names.hpp"
 #include "exr/picture_state.hpp"
 
 namespace dermis::exr {
@@ -17,24 +22,59 @@ constexpr std::size_t batch_bytes = std::size_t{64} << 20;  // read at once
 // The rows of one block of PIZ, and of DWAB.
 constexpr int smallest_batch_rows = 32;
 constexpr int largest_batch_rows = 256;
+constexpr std::int64_t most_around = 16;  // times the pixels of the largest part
 
-int rows_at_once(const PictureReader& reader, const PixelBlock& pixels) {
-  if (reader.tile_height() > 0) return reader.tile_height();
-  const std::size_t rows = batch_bytes / pixels.packed_row_bytes() / smallest_batch_rows * smallest_batch_rows;
+int rows_at_once(int tile_height, std::size_t packed_row_bytes) {
+  if (tile_height > 0) return tile_height;
+  const std::size_t rows = batch_bytes / packed_row_bytes / smallest_batch_rows * smallest_batch_rows;
   return std::clamp(static_cast<int>(std::min<std::size_t>(rows, largest_batch_rows)), smallest_batch_rows,
                     largest_batch_rows);
 }
 
 /// Memory is touched row by row as the rows arrive, so that a small file that promises much fails before it takes much.
-void read_pixels(PictureReader& reader, PixelBlock& pixels) {
-  const int step = std::min(rows_at_once(reader, pixels), pixels.height());
-  const auto packed =
-      std::make_unique_for_overwrite<std::byte[]>(pixels.packed_row_bytes() * static_cast<std::size_t>(step));
-  for (int row = 0; row < pixels.height(); row += step) {
-    const int rows = std::min(step, pixels.height() - row);
-    reader.read_rows(row, rows, packed.get());
-    pixels.unpack(packed.get(), row, rows);
+void read_pixels(PictureReader& reader, std::size_t part, const Packing& packing, const Area& area,
+                 PixelBlock& pixels) {
+  const std::size_t row_bytes = packing.pixel_bytes() * static_cast<std::size_t>(area.width);
+  const int step = std::min(rows_at_once(reader.tile_height(part), row_bytes), area.rows);
+  const auto packed = std::make_unique_for_overwrite<std::byte[]>(row_bytes * static_cast<std::size_t>(step));
+  for (int row = 0; row < area.rows; row += step) {
+    const int rows = std::min(step, area.rows - row);
+    reader.read_rows(part, row, rows, packed.get());
+    pixels.unpack(packing, packed.get(), {area.x, area.y + row, area.width, rows});
   }
+}
+
+std::int64_t pixels_of(const Window& window) { return std::int64_t{window.width} * window.height; }
+
+Window around(const Window& a, const Window& b) {
+  const int x = std::min(a.x, b.x);
+  const int y = std::min(a.y, b.y);
+  return {x, y, std::max(a.x + a.width, b.x + b.width) - x, std::max(a.y + a.height, b.y + b.height) - y};
+}
+
+std::string text_of(const Window& window) {
+  return std::to_string(window.width) + " x " + std::to_string(window.height) + " at (" + std::to_string(window.x) +
+         ", " + std::to_string(window.y) + ")";
+}
+
+/// Throws std::runtime_error if what surrounds the parts, which takes memory, is much larger than they are.
+void check_parts(const std::vector<PartDescription>& parts, const Window& whole) {
+  std::int64_t largest = 0;
+  for (const PartDescription& part : parts) largest = std::max(largest, pixels_of(part.data));
+  if (std::max(whole.width, whole.height) > max_side_px || pixels_of(whole) > most_around * largest)
+    throw std::runtime_error("parts far from each other, all within " + text_of(whole));
+}
+
+std::vector<PartDescription> descriptions_of(const PictureReader& reader) {
+  std::vector<PartDescription> parts;
+  for (std::size_t part = 0; part < reader.parts(); ++part) parts.push_back(reader.description(part));
+  return parts;
+}
+
+Window around(const std::vector<PartDescription>& parts) {
+  Window whole = parts.front().data;
+  for (const PartDescription& part : parts) whole = around(whole, part.data);
+  return whole;
 }
 
 [[noreturn]] void unreadable(const std::filesystem::path& path, std::string_view why) {
@@ -44,16 +84,35 @@ void read_pixels(PictureReader& reader, PixelBlock& pixels) {
 }  // namespace
 
 Picture Picture::read(const std::filesystem::path& path, std::size_t room) {
-  const std::vector<HeaderAttribute> header = read_header(path);
-  const ImageLibrary& library = image_library();
+  const std::vector<Header> headers = read_headers(path);
   try {
-    const auto reader = library.open(path, header);
-    const PictureDescription& found = reader->description();
-    Picture picture(found.data, found.display);
-    picture.state_->pixels = PixelBlock(found.data.width, found.data.height, found.channels, room);
-    read_pixels(*reader, picture.state_->pixels);
-    picture.state_->description = found;
-    picture.state_->description.channels.clear();
+    const auto reader = image_library().open(path, headers);
+    std::vector<PartDescription> parts = descriptions_of(*reader);
+    const std::vector<std::vector<std::string>> names = names_in_picture(parts);
+    const Window whole = around(parts);
+    check_parts(parts, whole);
+    std::vector<ChannelName> channels;
+    bool is_full = true;
+    for (std::size_t p = 0; p < parts.size(); ++p) {
+      is_full = is_full && parts[p].data == whole;
+      for (std::size_t c = 0; c < names[p].size(); ++c) channels.push_back({names[p][c], parts[p].channels[c].format});
+    }
+    Picture picture(whole, parts[0].display);
+    State& state = *picture.state_;
+    state = {{}, whole, PixelBlock(whole.width, whole.height, channels, room)};
+    if (!is_full) state.pixels.clear();
+    std::size_t first = 0;
+    for (std::size_t p = 0; p < parts.size(); ++p) {
+      const auto its = state.pixels.channels().subspan(first, names[p].size());
+      read_pixels(*reader, p, Packing(its), state.area_of(parts[p].data), state.pixels);
+      first += its.size();
+      Part part;
+      for (std::size_t c = 0; c < names[p].size(); ++c)
+        part.channels.push_back({names[p][c], parts[p].channels[c].name});
+      part.description = std::move(parts[p]);
+      part.description.channels.clear();
+      state.parts.push_back(std::move(part));
+    }
     return picture;
   } catch (const Error&) {
     throw;

@@ -34,54 +34,65 @@ std::string chosen_compression(std::string_view wanted, const std::string& of_fi
   return name;
 }
 
-std::vector<Channel> channels_to_write(const Picture& picture, std::span<const std::string> names) {
-  const std::span<const Channel> all = picture.channels();
-  if (names.empty()) return {all.begin(), all.end()};
-  for (const std::string& name : names) {
-    if (picture.find(name) == nullptr)
-      throw Error(ErrorCode::role_missing, "channel", escaped(name), "one of " + channel_list(picture));
+/// A part as it is written: those of its channels that are wanted, in its order.
+struct PartToWrite {
+  PartDescription description;
+  Packing packing;
+};
+
+std::vector<PartToWrite> parts_to_write(const std::vector<Part>& parts, const PixelBlock& pixels,
+                                        std::span<const std::string> names, std::string_view compression) {
+  std::vector<PartToWrite> out;
+  for (const Part& part : parts) {
+    if (!part.is_written) continue;
+    PartDescription description = part.description;
+    std::vector<Channel> chosen;
+    for (const auto& [name, name_in_part] : part.channels) {
+      if (!names.empty() && std::find(names.begin(), names.end(), name) == names.end()) continue;
+      chosen.push_back(*pixels.find(name));
+      description.channels.push_back({name_in_part, chosen.back().format});
+    }
+    if (chosen.empty()) continue;
+    description.compression = chosen_compression(compression, description.compression);
+    out.push_back({std::move(description), Packing(chosen)});
   }
-  std::vector<Channel> chosen;
-  std::copy_if(all.begin(), all.end(), std::back_inserter(chosen), [&](const Channel& channel) {
-    return std::find(names.begin(), names.end(), channel.name) != names.end();
-  });
-  return chosen;
+  return out;
 }
 
-PictureDescription description_to_write(PictureDescription description, std::span<const Channel> channels,
-                                        std::string compression) {
-  for (const Channel& channel : channels) description.channels.push_back({channel.name, channel.format});
-  description.compression = std::move(compression);
-  return description;
-}
-
-void write_pixels(PictureWriter& writer, const PixelBlock& pixels, const Packing& packing) {
-  const int step = std::min(batch_rows, pixels.height());
+void write_pixels(PictureWriter& writer, const PixelBlock& pixels, const Packing& packing, const Area& area) {
+  const int step = std::min(batch_rows, area.rows);
   const auto packed = std::make_unique_for_overwrite<std::byte[]>(
-      packing.pixel_bytes() * static_cast<std::size_t>(pixels.width()) * static_cast<std::size_t>(step));
-  for (int row = 0; row < pixels.height(); row += step) {
-    const int rows = std::min(step, pixels.height() - row);
-    pixels.pack(packing, packed.get(), row, rows);
+      packing.pixel_bytes() * static_cast<std::size_t>(area.width) * static_cast<std::size_t>(step));
+  for (int row = 0; row < area.rows; row += step) {
+    const int rows = std::min(step, area.rows - row);
+    pixels.pack(packing, packed.get(), {area.x, area.y + row, area.width, rows});
     writer.write_rows(row, rows, packed.get());
   }
-  writer.close();
 }
 
 }  // namespace
 
 void Picture::write(const std::filesystem::path& path, std::string_view compression,
                     std::span<const std::string> names) const {
-  const PixelBlock& pixels = state_->pixels;
-  const std::string method = chosen_compression(compression, state_->description.compression);
   const auto fail = [&path](std::string_view why) {
     throw Error(ErrorCode::output, escaped(path.string()), escaped(why), "a file that can be written");
   };
-  if (pixels.channels().empty()) fail("a picture without channels");
-  const std::vector<Channel> channels = channels_to_write(*this, names);
+  for (const std::string& name : names) {
+    if (find(name) == nullptr)
+      throw Error(ErrorCode::role_missing, "channel", escaped(name), "one of " + channel_list(*this));
+  }
+  const std::vector<PartToWrite> parts = parts_to_write(state_->parts, state_->pixels, names, compression);
+  if (parts.empty()) fail("a picture without channels");
+  std::vector<PartDescription> descriptions;
+  for (const PartToWrite& part : parts) descriptions.push_back(part.description);
   try {
     TemporaryFile file(path);
-    const PictureDescription description = description_to_write(state_->description, channels, method);
-    write_pixels(*image_library().create(file.stream(), description), pixels, Packing(channels));
+    const auto writer = image_library().create(file.stream(), file.path(), descriptions);
+    for (std::size_t p = 0; p < parts.size(); ++p) {
+      writer->begin_part(p);
+      write_pixels(*writer, state_->pixels, parts[p].packing, state_->area_of(descriptions[p].data));
+    }
+    writer->close();
     file.commit();
   } catch (const Error&) {
     throw;

@@ -27,7 +27,6 @@ PixelBlock::PixelBlock(int width, int height, std::span<const ChannelName> chann
   const bool is_wide = wide_end > 0 || room > 0;
   used_bytes_ = is_wide ? (end + 3) / 4 * 4 : end;
   pixel_bytes_ = used_bytes_ + 4 * room;
-  packing_ = Packing(channels_);
   bytes_ = std::make_unique_for_overwrite<std::byte[]>(row_bytes() * static_cast<std::size_t>(height_));
 }
 
@@ -47,23 +46,23 @@ const Channel* PixelBlock::find(std::string_view name) const {
   return it == channels_.end() ? nullptr : &*it;
 }
 
-void PixelBlock::unpack(const std::byte* packed, int first_row, int rows) {
-  std::byte* pixel = row(first_row);
-  for (std::int64_t i = 0; i < std::int64_t{rows} * width_; ++i) {
-    packing_.unpack(packed, pixel);
-    pixel += pixel_bytes_;
-    packed += packing_.pixel_bytes();
+void PixelBlock::unpack(const Packing& packing, const std::byte* packed, const Area& area) {
+  for (int y = 0; y < area.rows; ++y) {
+    std::byte* to = pixel(area.x, area.y + y);
+    for (int x = 0; x < area.width; ++x, to += pixel_bytes_, packed += packing.pixel_bytes())
+      packing.unpack(packed, to);
   }
 }
 
-void PixelBlock::pack(const Packing& packing, std::byte* packed, int first_row, int rows) const {
-  const std::byte* pixel = row(first_row);
-  for (std::int64_t i = 0; i < std::int64_t{rows} * width_; ++i) {
-    packing.pack(packed, pixel);
-    pixel += pixel_bytes_;
-    packed += packing.pixel_bytes();
+void PixelBlock::pack(const Packing& packing, std::byte* packed, const Area& area) const {
+  for (int y = 0; y < area.rows; ++y) {
+    const std::byte* from = pixel(area.x, area.y + y);
+    for (int x = 0; x < area.width; ++x, from += pixel_bytes_, packed += packing.pixel_bytes())
+      packing.pack(packed, from);
   }
 }
+
+void PixelBlock::clear() { std::fill_n(data(), row_bytes() * static_cast<std::size_t>(height_), std::byte{0}); }
 
 void PixelBlock::add(std::span<const ChannelName> more) {
   if (has_room_for(more))
@@ -85,7 +84,6 @@ void PixelBlock::add_in_room(std::span<const ChannelName> more) {
     channels_.push_back({name.name, name.format, used_bytes_});
     used_bytes_ += 4;
   }
-  packing_ = Packing(channels_);
 }
 
 PixelBlock PixelBlock::with(std::span<const ChannelName> more) const {
@@ -94,8 +92,8 @@ PixelBlock PixelBlock::with(std::span<const ChannelName> more) const {
   all.insert(all.end(), more.begin(), more.end());
 
   PixelBlock out(width_, height_, all);
+  out.clear();
   const std::size_t pixels = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
-  std::fill_n(out.data(), out.pixel_bytes_ * pixels, std::byte{0});
   for (std::size_t i = 0; i < pixels; ++i) {
     for (std::size_t c = 0; c < channels_.size(); ++c) {
       std::memcpy(out.data() + i * out.pixel_bytes_ + out.channels_[c].byte_offset,

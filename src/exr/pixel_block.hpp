@@ -45,6 +45,14 @@ class Packing {
   std::size_t pixel_bytes_ = 0;
 };
 
+/// A rectangle of the pixels of a block.
+struct Area {
+  int x;
+  int y;
+  int width;
+  int rows;
+};
+
 /// The pixels of a picture. Within a pixel the channels of four bytes come first, so that every value is aligned, but
 /// for those that were added where there was room.
 class PixelBlock {
@@ -58,14 +66,16 @@ class PixelBlock {
   const Channel* find(std::string_view name) const;
   std::size_t pixel_bytes() const { return pixel_bytes_; }
   std::size_t row_bytes() const { return pixel_bytes_ * static_cast<std::size_t>(width_); }
-  std::size_t packed_row_bytes() const { return packing_.pixel_bytes() * static_cast<std::size_t>(width_); }
 
   std::byte* data() { return bytes_.get(); }
   const std::byte* data() const { return bytes_.get(); }
 
-  /// Copies rows from packed ones of all channels, or to packed ones.
-  void unpack(const std::byte* packed, int first_row, int rows);
-  void pack(const Packing& packing, std::byte* packed, int first_row, int rows) const;
+  /// Copies channels of an area from packed pixels, or to packed ones.
+  void unpack(const Packing& packing, const std::byte* packed, const Area& area);
+  void pack(const Packing& packing, std::byte* packed, const Area& area) const;
+
+  /// Makes all pixels zero.
+  void clear();
 
   /// Adds channels, which are zero: in place if there is room for them.
   void add(std::span<const ChannelName> more);
@@ -75,12 +85,13 @@ class PixelBlock {
   bool has_room_for(std::span<const ChannelName> more) const;
   void add_in_room(std::span<const ChannelName> more);
   PixelBlock with(std::span<const ChannelName> more) const;
-  std::byte* row(int y) const { return bytes_.get() + row_bytes() * static_cast<std::size_t>(y); }
+  std::byte* pixel(int x, int y) const {
+    return bytes_.get() + row_bytes() * static_cast<std::size_t>(y) + pixel_bytes_ * static_cast<std::size_t>(x);
+  }
 
   int width_;
   int height_;
   std::vector<Channel> channels_;
-  Packing packing_;             ///< of all channels
   std::size_t used_bytes_ = 0;  ///< of a pixel; room begins there
   std::size_t pixel_bytes_ = 0;
   std::unique_ptr<std::byte[]> bytes_;

@@ -15,6 +15,7 @@ class TemporaryFile {
   TemporaryFile(const TemporaryFile&) = delete;
   TemporaryFile& operator=(const TemporaryFile&) = delete;
 
+  const std::filesystem::path& path() const { return path_; }  ///< of the temporary file
   std::FILE* stream() const { return stream_; }
 
   /// Brings everything to the disk and gives the file its name. Throws Error(output).

@@ -67,8 +67,8 @@ raw_exr::File small_file() {
   return file;
 }
 
-void require_channels(const std::filesystem::path& path, const std::vector<raw_exr::Channel>& channels) {
-  const auto stored = stored_channels(path);
+void require_channels(const std::filesystem::path& path, const std::vector<raw_exr::Channel>& channels, int part = 0) {
+  const auto stored = stored_channels(path, part);
   for (const raw_exr::Channel& channel : channels) {
     INFO(channel.name);
     REQUIRE(stored.count(channel.name) == 1);
@@ -76,10 +76,13 @@ void require_channels(const std::filesystem::path& path, const std::vector<raw_e
   }
 }
 
-std::vector<dermis::exr::HeaderAttribute> attributes_of(const std::filesystem::path& path) {
-  std::vector<dermis::exr::HeaderAttribute> attributes = dermis::exr::read_header(path);
+dermis::exr::Header sorted(dermis::exr::Header attributes) {
   std::sort(attributes.begin(), attributes.end(), [](const auto& a, const auto& b) { return a.name < b.name; });
   return attributes;
+}
+
+dermis::exr::Header attributes_of(const std::filesystem::path& path) {
+  return sorted(dermis::exr::read_headers(path).front());
 }
 
 void write_tiled(const std::filesystem::path& path, Random& random, int width, int height, bool mip_mapped) {
@@ -427,7 +430,7 @@ TEST_CASE("a new picture needs windows of possible size") {
   REQUIRE(folder.file_count() == 0);
 }
 
-TEST_CASE("what is not there or not a flat OpenEXR file of one part is refused") {
+TEST_CASE("what is not there or not a flat OpenEXR file is refused") {
   const TemporaryFolder folder;
   REQUIRE(reading(folder / "none.exr").code == ErrorCode::input_missing);
   REQUIRE(reading(folder.path()).code == ErrorCode::input_unsupported);
@@ -438,9 +441,6 @@ TEST_CASE("what is not there or not a flat OpenEXR file of one part is refused")
   REQUIRE_FALSE(reading(folder, raw_exr::bytes(file)).code);
   file.flags = 0x800;
   REQUIRE(reading(folder, raw_exr::bytes(file)).says("deep"));
-  file.flags = 0x1000;
-  file.end = std::string(1, '\0') + raw_exr::header(small_file()).substr(8) + '\0';
-  REQUIRE(reading(folder, raw_exr::bytes(file)).says("several parts"));
   file = small_file();
   file.attributes = raw_exr::attribute("type", "string", "deepscanline");
   REQUIRE(reading(folder, raw_exr::bytes(file)).says("deep"));
@@ -460,6 +460,100 @@ TEST_CASE("a file in the form for several parts is read if it has one") {
   write_bytes(folder / "in.exr", raw_exr::bytes(file));
   Picture::read(folder / "in.exr").write(folder / "out.exr");
   require_channels(folder / "out.exr", file.channels);
+}
+
+TEST_CASE("every bit of every part comes back, with its name, window and attributes") {
+  Random random(2);
+  const TemporaryFolder folder;
+  for (int i = 0; i < 6; ++i) {
+    std::vector<raw_exr::File> files;
+    for (const char* name : {"beauty", "depth", "ids"}) {
+      raw_exr::File file = small_file();
+      file.data = {random.integer(-5, 5), random.integer(-5, 5), random.integer(1, 20), random.integer(1, 20)};
+      file.channels = random_channels(random, file.data);
+      file.attributes = raw_exr::attribute("owner", "string", name);
+      files.push_back(raw_exr::part(file, name));
+    }
+    write_bytes(folder / "in.exr", raw_exr::bytes_of_parts(files));
+    Picture picture = Picture::read(folder / "in.exr");
+    const bool adds = random.coin();
+    const std::array names = {std::string("left.sss.R"), std::string("left.sss.G"), std::string("left.sss.B")};
+    if (adds) picture.add_channels(names, Format::f32);
+    picture.write(folder / "out.exr");
+
+    const auto before = dermis::exr::read_headers(folder / "in.exr");
+    const auto after = dermis::exr::read_headers(folder / "out.exr");
+    REQUIRE(after.size() == files.size() + (adds ? 1 : 0));
+    for (std::size_t p = 0; p < files.size(); ++p) {
+      INFO(p);
+      REQUIRE(sorted(after[p]) == sorted(before[p]));
+      require_channels(folder / "out.exr", files[p].channels, static_cast<int>(p));
+    }
+    if (!adds) continue;
+    const OIIO::ImageSpec added = OIIO::ImageInput::open(folder / "out.exr")->spec(static_cast<int>(files.size()));
+    REQUIRE(added.get_string_attribute("oiio:subimagename") == "left.sss");
+    REQUIRE(added.channelnames == std::vector<std::string>{"R", "G", "B"});
+    REQUIRE(added.width == picture.width());
+    REQUIRE(added.x == picture.data_window().x);
+  }
+}
+
+TEST_CASE("channels of parts are called after their parts, once each, and lie where their windows say") {
+  const TemporaryFolder folder;
+  const auto part = [](const std::string& name, const std::vector<std::string>& channels, Window data,
+                       const std::string& view = {}) {
+    raw_exr::File file{.data = data, .display = {0, 0, 8, 8}, .channels = {}};
+    for (const std::string& channel : channels) {
+      raw_exr::Channel values{channel, Format::f32, {}};
+      for (int i = 0; i < data.width * data.height; ++i) values.values += raw_exr::f32(static_cast<float>(i + 1));
+      file.channels.push_back(values);
+    }
+    if (!view.empty()) file.attributes = raw_exr::attribute("view", "string", view);
+    return raw_exr::part(file, name);
+  };
+  write_bytes(folder / "in.exr",
+              raw_exr::bytes_of_parts({part("rgba", {"B", "G", "R"}, {0, 0, 8, 8}), part("Depth", {"Z"}, {2, 1, 3, 2}),
+                                       part("N", {"N.X", "N.Y"}, {0, 0, 8, 8}), part("a", {"P.X"}, {0, 0, 8, 8}),
+                                       part("b", {"P.X"}, {0, 0, 8, 8}), part("C.left", {"C.R"}, {0, 0, 8, 8}, "left"),
+                                       part("right", {"C.R"}, {0, 0, 8, 8}, "right")}));
+  const Picture picture = Picture::read(folder / "in.exr");
+  std::vector<std::string> names;
+  for (const auto& channel : picture.channels()) names.push_back(channel.name);
+  REQUIRE(names == std::vector<std::string>{"rgba.R", "rgba.G", "rgba.B", "Depth.Z", "N.X", "N.Y", "a.P.X", "b.P.X",
+                                            "C.left.R", "C.right.R"});
+  REQUIRE(picture.data_window() == Window{0, 0, 8, 8});
+  const std::vector<float> depth = picture.plane("Depth.Z");
+  for (int y = 0; y < 8; ++y) {
+    for (int x = 0; x < 8; ++x) {
+      const bool inside = x >= 2 && x < 5 && y >= 1 && y < 3;
+      REQUIRE(depth[static_cast<std::size_t>(y * 8 + x)] ==
+              (inside ? static_cast<float>((y - 1) * 3 + x - 2 + 1) : 0.0F));
+    }
+  }
+  // A file of some channels has the parts that have them.
+  const std::array some = {std::string("Depth.Z")};
+  picture.write(folder / "out.exr", {}, some);
+  REQUIRE(dermis::exr::read_headers(folder / "out.exr").size() == 1);
+  REQUIRE(Picture::read(folder / "out.exr").data_window() == Window{2, 1, 3, 2});
+}
+
+TEST_CASE("parts that do not show one picture are refused") {
+  const TemporaryFolder folder;
+  raw_exr::File file = small_file();
+  file.channels.resize(1);
+  file.channels[0] = {"a.R", Format::f32, std::string(4 * 7 * 5, '\0')};
+  raw_exr::File other = file;
+  other.channels[0].name = "b.R";
+  const auto both = [&] { return raw_exr::bytes_of_parts({raw_exr::part(file, "a"), raw_exr::part(other, "b")}); };
+  REQUIRE_FALSE(reading(folder, both()).code);
+  other.display = {0, 0, 15, 9};
+  REQUIRE(reading(folder, both()).code == ErrorCode::input_unsupported);
+  other.display = file.display;
+  other.data.x = 60000;
+  REQUIRE(reading(folder, both()).says("parts far from each other"));
+  other.data.x = file.data.x;
+  other.attributes = raw_exr::attribute("type", "string", "deepscanline");
+  REQUIRE(reading(folder, both()).says("deep"));
 }
 
 TEST_CASE("sizes beyond the limits are refused before memory is taken") {

@@ -93,4 +93,41 @@ inline std::string bytes(const File& file) {
   return out + rows;
 }
 
+/// A part, with the attributes that a part must have.
+inline File part(File file, const std::string& name) {
+  file.flags = 0x1000;
+  file.attributes += attribute("name", "string", name) + attribute("type", "string", "scanlineimage") +
+                     attribute("chunkCount", "int", i32(file.data.height));
+  return file;
+}
+
+/// A file of several parts, whose names are in their attributes.
+inline std::string bytes_of_parts(const std::vector<File>& parts) {
+  std::string out = u32(20000630) + u32(2 | 0x400 | 0x1000);
+  std::size_t chunks = 0;
+  for (const File& file : parts) {
+    out += header(file).substr(8);
+    chunks += static_cast<std::size_t>(file.data.height);
+  }
+  out += '\0';
+  const std::size_t first = out.size() + 8 * chunks;
+  std::string rows;
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    const File& file = parts[p];
+    std::size_t row_bytes = 0;
+    for (const Channel& channel : file.channels)
+      row_bytes += dermis::bytes_of(channel.format) * static_cast<std::size_t>(file.data.width);
+    for (int y = 0; y < file.data.height; ++y) {
+      const std::uint64_t offset = first + rows.size();
+      out += u32(static_cast<std::uint32_t>(offset)) + u32(static_cast<std::uint32_t>(offset >> 32));
+      rows += i32(static_cast<int>(p)) + i32(file.data.y + y) + u32(static_cast<std::uint32_t>(row_bytes));
+      for (const Channel& channel : file.channels) {
+        const std::size_t n = dermis::bytes_of(channel.format) * static_cast<std::size_t>(file.data.width);
+        rows += channel.values.substr(static_cast<std::size_t>(y) * n, n);
+      }
+    }
+  }
+  return out + rows;
+}
+
 }  // namespace raw_exr

@@ -21,12 +21,12 @@ inline OIIO::ImageSpec spec_of(const std::filesystem::path& path) {
   return input->spec();
 }
 
-inline std::map<std::string, StoredChannel> stored_channels(const std::filesystem::path& path) {
+inline std::map<std::string, StoredChannel> stored_channels(const std::filesystem::path& path, int part = 0) {
   const auto input = OIIO::ImageInput::open(path.string());
   REQUIRE(input);
-  const OIIO::ImageSpec spec = input->spec();
+  const OIIO::ImageSpec spec = input->spec(part);
   std::string pixels(spec.image_bytes(true), '\0');
-  REQUIRE(input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeUnknown, pixels.data()));
+  REQUIRE(input->read_image(part, 0, 0, spec.nchannels, OIIO::TypeUnknown, pixels.data()));
   std::map<std::string, StoredChannel> out;
   const std::size_t pixel_bytes = spec.pixel_bytes(true);
   std::size_t offset = 0;
