@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -32,14 +33,20 @@ struct Channel {
   std::size_t byte_offset;  ///< from the start of a pixel
 };
 
-/// All channels and attributes of a flat, single-part EXR file; the pixels lie interleaved in the formats of the file,
-/// so that what is not touched is written back bit for bit.
+/// All channels and attributes of the parts of a flat EXR file; the pixels lie interleaved in the formats of the file,
+/// so that what is not touched is written back bit for bit, part by part. If there are several parts, a channel without
+/// a dot in its name is called after its part, as "DiffDir.R".
 class Picture {
  public:
-  /// Reads a file. Throws Error(input_missing) if it is not there, Error(input_unsupported) if it is damaged, not EXR,
-  /// deep, or has several parts, or is larger than 65536 pixels on a side or 1024 channels. So many channels of four
-  /// bytes can then be added without a copy of all pixels as there is `room`.
+  /// Reads a file. Throws Error(input_missing) if it is not there, Error(input_unsupported) if it is damaged, not EXR
+  /// or deep, or is larger than 65536 pixels on a side or 1024 channels. So many channels of four bytes can then be
+  /// added without a copy of all pixels as there is `room`.
   static Picture read(const std::filesystem::path& path, std::size_t room = 0);
+
+  /// Adds the channels of another file, which are read and never written, under the names "PATH:CHANNEL"; where its
+  /// data window does not reach they are zero. Does nothing if that was done before. Throws as read, and
+  /// Error(input_unsupported) if its display window is another one. Invalidates views.
+  void join(const std::filesystem::path& path);
 
   /// A picture without channels, black outside `data`.
   Picture(Window data, Window display);
@@ -47,13 +54,18 @@ class Picture {
   Picture(Picture&&) noexcept;
   Picture& operator=(Picture&&) noexcept;
 
-  int width() const;   ///< of the data window: the pixels there are
-  int height() const;  ///< of the data window
-  Window data_window() const;
+  int width() const;           ///< of the data window: the pixels there are
+  int height() const;          ///< of the data window
+  Window data_window() const;  ///< around those of all parts
   Window display_window() const;
   double pixel_aspect() const;  ///< width of a pixel / its height
   std::string compression() const;
   std::span<const Channel> channels() const;
+
+  /// The views of a stereo picture, the default one first: by the attributes "multiView" or "view", else "left" and
+  /// "right" if channels have both in their names. None if it has no views.
+  std::vector<std::string> views() const;
+
   const Channel* find(std::string_view name) const;  ///< nullptr if there is none
 
   /// The values of one channel, as float. Throws Error(role_missing) if there is none.
@@ -67,6 +79,16 @@ class Picture {
   /// one format or not evenly spaced.
   Image view(std::span<const std::string> names) const;
   OutputImage view_to_write(std::span<const std::string> names);
+
+  /// The names of all attributes in the file's header, and of those that were set.
+  std::vector<std::string> attribute_names() const;
+
+  /// The value of a text attribute; none if there is no such attribute or it is no text.
+  std::optional<std::string> text_attribute(std::string_view name) const;
+
+  /// The numbers of an attribute: int, float, double, vectors, and matrices row by row; of a text the numbers that it
+  /// lists with blanks or commas between them. Empty if there is no such attribute or it is anything else.
+  std::vector<double> number_attribute(std::string_view name) const;
 
   /// Sets a text attribute.
   void set_attribute(std::string_view name, std::string_view value);
@@ -134,23 +156,66 @@ std::string role_names();
 /// The channels of one role: a sum of groups of three (RGB or XYZ) or one.
 using ChannelSum = std::vector<std::vector<std::string>>;
 
+/// How a renderer, or a studio, names its passes. The names are without layer, view and channel ("DiffDir"), in any
+/// case;
+/// "" stands for the layer's own R, G and B. A role is the sum of its passes.
+struct Renderer {
+  /// A pass by its names, the first of which that is there counts.
+  struct Pass {
+    Role role;
+    std::vector<std::string> names;
+  };
+
+  std::string name;
+  Lighting lighting;  ///< whether the albedo is in the light
+  std::vector<Pass> passes;
+  /// If there are any, only pictures are of this renderer that have one of these channels.
+  std::vector<std::string> marks = {};
+};
+
+/// The renderers that dermis knows by name.
+std::span<const Renderer> renderers();
+
+/// The one of that name, or nullptr.
+const Renderer* find_renderer(std::string_view name);
+
+/// Their names with commas between them, for help and messages.
+std::string renderer_names();
+
+/// The caller's word on roles.
+struct RoleRequest {
+  /// Each is "role=channels": channels are full names separated by commas (1 or 3), or one prefix that stands for its
+  /// .R .G .B or .X .Y .Z (or single) channels; "+" adds several; nothing unsets the role. A channel of a file that was
+  /// joined is "PATH:CHANNEL", and "PATH" alone a prefix.
+  std::vector<std::string> overrides = {};
+  std::string layer = {};              ///< if there are several; empty: the first one with diffuse light
+  std::string view = {};               ///< if there are several; empty: the first
+  const Renderer* renderer = nullptr;  ///< nullptr: the one most of whose passes are there
+};
+
 /// Which channels of a picture play which role.
 struct Roles {
-  std::string layer;  ///< the view layer, without the dot; may be empty
-  std::array<ChannelSum, role_table.size()> channels;
+  std::string layer = {};             ///< the view layer, without the dot; may be empty
+  std::string view = {};              ///< or empty
+  std::string renderer = {};          ///< whose names the light has; empty if it has none or an override says it
+  Lighting lighting = Lighting::raw;  ///< as the renderer writes it; raw if there is none
+  std::array<ChannelSum, role_table.size()> channels = {};
+  std::array<std::string, role_table.size()> rules =
+      {};  ///< what gave the role: a renderer, "any renderer" or "--role"
 
   const ChannelSum& operator[](Role role) const { return channels[static_cast<std::size_t>(role)]; }
   ChannelSum& operator[](Role role) { return channels[static_cast<std::size_t>(role)]; }
   bool has(Role role) const { return !(*this)[role].empty(); }
 };
 
-/// Finds roles by the names that Blender and Cycles give (2.8 to 5.x), in any case. Each override is "role=channels":
-/// channels are full names separated by commas (1 or 3), or one prefix that stands for its .R .G .B or .X .Y .Z (or
-/// single) channels; "+" adds several. `layer` picks a view layer if there are several; if empty, the first one with
-/// diffuse light. What the layer lacks is looked for outside all layers.
-/// Throws Error(usage) for a malformed override, Error(role_missing) that lists the channels there are if one names a
-/// channel that is not, or the layers if there is no such layer.
-Roles find_roles(const Picture& picture, std::span<const std::string> overrides = {}, std::string_view layer = {});
+/// Finds roles by the names of the renderer in any case, in a layer or else outside all layers; what the renderer has
+/// no channel for (but light, albedo and ids) by the names that any renderer gives it. Throws Error(usage) for a
+/// malformed override, Error(role_missing) that lists the channels there are if one names a channel that is not, or the
+/// layers or views if there is no such layer or view.
+Roles find_roles(const Picture& picture, const RoleRequest& request = {});
+
+/// The files that overrides name and that have to be joined for them.
+std::vector<std::string> files_of(std::span<const std::string> overrides);
 
 /// The summed values of a role, packed, as float; empty if the picture does not have it.
 std::vector<float> load(const Picture& picture, const Roles& roles, Role role);
@@ -161,15 +226,35 @@ void require(const Picture& picture, const Roles& roles, Role role);
 /// The id that Cryptomatte gives a name: MurmurHash3 of it, as a float that is a number.
 float cryptomatte_id(std::string_view name);
 
+/// A name in a Cryptomatte, and how many pixels it covers more than half of.
+struct CryptomatteName {
+  std::string name;
+  std::int64_t pixels;
+};
+
+/// A Cryptomatte of a picture: its objects, its materials or its assets.
+struct Cryptomatte {
+  std::string name;  ///< as "ViewLayer.CryptoMaterial"
+  /// Those of its manifest; none if the picture has none. It may be in the header, or in a file that the header names
+  /// and that lies in `folder`.
+  std::vector<CryptomatteName> names;
+};
+
+/// The Cryptomattes of the layer and view of the roles, those of materials first, then assets, then objects.
+std::vector<Cryptomatte> find_cryptomattes(const Picture& picture, const Roles& roles,
+                                           const std::filesystem::path& folder = {});
+
 /// Which of some names covers most of each pixel (-1: none does), and how much of it, 0..1.
 struct Mattes {
+  std::string cryptomatte;  ///< the one that was read
   std::vector<int> name;
   std::vector<float> share;
 };
 
-/// Reads all Cryptomatte layers of a picture (channels such as "ViewLayer.CryptoObject00.R", in any case). Throws
-/// Error(role_missing) if there is none or a name covers no pixel, Error(input_unsupported) if ids are not float32.
-Mattes load_cryptomatte(const Picture& picture, std::span<const std::string> names);
+/// Reads the first Cryptomatte of find_cryptomattes in which all names cover pixels. Throws Error(role_missing) if
+/// there is none, with the names that are like one that is missing; Error(input_unsupported) if ids are not float32.
+Mattes load_cryptomatte(const Picture& picture, const Roles& roles, std::span<const std::string> names,
+                        const std::filesystem::path& folder = {});
 
 /// The caller's word on the camera; at most one of fov and focal.
 struct CameraHint {

@@ -1,13 +1,26 @@
 /// A G-buffer: the places of its pixels in memory, and the camera that saw them.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
+
+#include "dermis/words.hpp"
 
 struct _cl_mem;
 using cl_mem = struct _cl_mem*;
 
 namespace dermis {
+
+/// The kind of light in Frame::light.
+enum class Lighting {
+  raw,  ///< irradiance: the albedo is not in it
+  lit,  ///< irradiance times albedo; where an albedo is below 1e-4 the irradiance counts as 0
+};
+
+template <>
+inline constexpr std::array<Named<Lighting>, 2> word_table<Lighting> = {
+    {{Lighting::raw, "raw"}, {Lighting::lit, "lit"}}};
 
 /// Formats of a value.
 enum class Format : std::uint8_t { f16, f32, u8, u16, u32 };

@@ -75,16 +75,6 @@ struct DiscOptions {
   bool operator==(const DiscOptions&) const = default;
 };
 
-/// The kind of light in Frame::light.
-enum class Lighting {
-  raw,  ///< irradiance: the albedo is not in it
-  lit,  ///< irradiance times albedo; where an albedo is below 1e-4 the irradiance counts as 0
-};
-
-template <>
-inline constexpr std::array<Named<Lighting>, 2> word_table<Lighting> = {
-    {{Lighting::raw, "raw"}, {Lighting::lit, "lit"}}};
-
 /// The output of a pixel whose light or albedo is not finite. Such a pixel never gives light to another.
 enum class BadPixels {
   keep,   ///< the pixel is left as it is

@@ -6,22 +6,34 @@
 #include <utility>
 
 #include "exr/message_text.hpp"
+#include "exr/views.hpp"
 
 namespace dermis::exr {
 namespace {
 
-constexpr std::array<std::string_view, 6> single_endings = {"Z", "X", "V", "Y", "R", ""};  // "": the prefix itself
+constexpr std::array<std::string_view, 8> single_endings = {"Z", "X", "V", "Y", "R", "T", "I", ""};  // "": itself
 
 }  // namespace
 
 std::string with_dot(std::string_view prefix, std::string_view ending) {
   std::string out(prefix);
-  if (!prefix.empty() && !ending.empty()) out += '.';
+  if (!prefix.empty() && !ending.empty() && !prefix.ends_with(':')) out += '.';
   return out += ending;
 }
 
-Catalogue::Catalogue(const Picture& picture) : picture_(picture) {
-  for (const Channel& channel : picture.channels()) lower_names_.push_back(lower(channel.name));
+Catalogue::Catalogue(const Picture& picture, std::string_view view) : picture_(picture) {
+  const std::vector<std::string> views = picture.views();
+  const std::string_view wanted = view.empty() && !views.empty() ? views.front() : view;
+  for (const Channel& channel : picture.channels()) {
+    if (lower(channel.name).find(".exr:") != std::string::npos) {
+      entries_.push_back({channel.name, channel.name, lower(channel.name), true});
+      continue;
+    }
+    ViewName name = split_view(channel.name, views);
+    if (name.view != wanted && !(name.view.empty() && (views.empty() || wanted == views.front()))) continue;
+    std::string lower_name = lower(name.short_name);
+    entries_.push_back({channel.name, std::move(name.short_name), std::move(lower_name), false});
+  }
 }
 
 std::string Catalogue::all() const { return channel_list(picture_); }
@@ -30,13 +42,14 @@ std::string Catalogue::find(std::string_view name) const {
   const std::string wanted = lower(name);
   std::string best;
   std::ptrdiff_t best_alike = -1;
-  for (std::size_t i = 0; i < lower_names_.size(); ++i) {
-    if (lower_names_[i] != wanted) continue;
-    const std::string& candidate = name_at(i);
+  for (const Entry& entry : entries_) {
+    const bool is_whole = entry.name.size() == wanted.size() && lower(entry.name) == wanted;
+    if (entry.lower_name != wanted && !is_whole) continue;
+    const std::string& candidate = is_whole ? entry.name : entry.short_name;
     const auto alike = std::inner_product(name.begin(), name.end(), candidate.begin(), std::ptrdiff_t{0}, std::plus<>(),
                                           std::equal_to<>());
     if (alike > best_alike) {
-      best = candidate;
+      best = entry.name;
       best_alike = alike;
     }
   }

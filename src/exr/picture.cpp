@@ -98,7 +98,8 @@ void convert(const std::byte* from, std::size_t pixel_bytes, std::span<float> to
 /// Lists a new channel in the only part, or, where a file has several, in one of its own that is named by what stands
 /// before the last dot.
 void add_to_part(std::vector<Part>& parts, const Window& data, const std::string& name) {
-  if (parts.size() == 1) {
+  const auto written = std::count_if(parts.begin(), parts.end(), [](const Part& part) { return part.is_written; });
+  if (written == 1) {
     parts.front().channels.push_back({name, name});
     return;
   }
@@ -193,13 +194,6 @@ Image Picture::view(std::span<const std::string> names) const {
 
 OutputImage Picture::view_to_write(std::span<const std::string> names) {
   return {.host = state_->pixels.data(), .layout = layout_of(*this, names, state_->pixels)};
-}
-
-void Picture::set_attribute(std::string_view name, std::string_view value) {
-  if (name.empty() || name.size() > max_name || name.find('\0') != std::string_view::npos) {
-    throw Error(ErrorCode::usage, "name of an attribute", '"' + escaped(name) + '"', "1 to 255 characters");
-  }
-  state_->parts.front().description.attributes->set_text(name, value);
 }
 
 }  // namespace dermis::exr

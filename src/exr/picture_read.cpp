@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <exception>
 #include <memory>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -52,6 +53,12 @@ Window around(const Window& a, const Window& b) {
   return {x, y, std::max(a.x + a.width, b.x + b.width) - x, std::max(a.y + a.height, b.y + b.height) - y};
 }
 
+Window overlap(const Window& a, const Window& b) {
+  const int x = std::max(a.x, b.x);
+  const int y = std::max(a.y, b.y);
+  return {x, y, std::min(a.x + a.width, b.x + b.width) - x, std::min(a.y + a.height, b.y + b.height) - y};
+}
+
 std::string text_of(const Window& window) {
   return std::to_string(window.width) + " x " + std::to_string(window.height) + " at (" + std::to_string(window.x) +
          ", " + std::to_string(window.y) + ")";
@@ -77,6 +84,45 @@ Window around(const std::vector<PartDescription>& parts) {
   return whole;
 }
 
+/// The parts that a file describes, with their channels under the names that they have in the picture.
+std::vector<Part> parts_of(const PictureReader& reader) {
+  std::vector<PartDescription> descriptions = descriptions_of(reader);
+  const std::vector<std::vector<std::string>> names = names_in_picture(descriptions);
+  std::vector<Part> parts;
+  for (std::size_t p = 0; p < descriptions.size(); ++p) {
+    Part part{std::move(descriptions[p]), {}};
+    for (std::size_t c = 0; c < names[p].size(); ++c)
+      part.channels.push_back({names[p][c], part.description.channels[c].name});
+    parts.push_back(std::move(part));
+  }
+  return parts;
+}
+
+PixelBlock block_of(const std::vector<Part>& parts, const Window& whole, std::size_t room) {
+  std::vector<ChannelName> channels;
+  bool is_full = true;
+  for (const Part& part : parts) {
+    is_full = is_full && part.description.data == whole;
+    for (std::size_t c = 0; c < part.channels.size(); ++c)
+      channels.push_back({part.channels[c].name, part.description.channels[c].format});
+  }
+  PixelBlock block(whole.width, whole.height, channels, room);
+  if (!is_full) block.clear();
+  return block;
+}
+
+/// The attributes of all parts, each name once: that of the first part that has it.
+Header merged(const std::vector<Header>& headers) {
+  Header all;
+  std::set<std::string_view> names;
+  for (const Header& header : headers) {
+    for (const HeaderAttribute& attribute : header) {
+      if (names.insert(attribute.name).second) all.push_back(attribute);
+    }
+  }
+  return all;
+}
+
 [[noreturn]] void unreadable(const std::filesystem::path& path, std::string_view why) {
   throw Error(ErrorCode::input_unsupported, escaped(path.string()), escaped(why), "a complete OpenEXR file");
 }
@@ -87,37 +133,65 @@ Picture Picture::read(const std::filesystem::path& path, std::size_t room) {
   const std::vector<Header> headers = read_headers(path);
   try {
     const auto reader = image_library().open(path, headers);
-    std::vector<PartDescription> parts = descriptions_of(*reader);
-    const std::vector<std::vector<std::string>> names = names_in_picture(parts);
-    const Window whole = around(parts);
-    check_parts(parts, whole);
-    std::vector<ChannelName> channels;
-    bool is_full = true;
-    for (std::size_t p = 0; p < parts.size(); ++p) {
-      is_full = is_full && parts[p].data == whole;
-      for (std::size_t c = 0; c < names[p].size(); ++c) channels.push_back({names[p][c], parts[p].channels[c].format});
-    }
-    Picture picture(whole, parts[0].display);
+    const Window whole = around(descriptions_of(*reader));
+    check_parts(descriptions_of(*reader), whole);
+    std::vector<Part> parts = parts_of(*reader);
+    Picture picture(whole, parts.front().description.display);
     State& state = *picture.state_;
-    state = {{}, whole, PixelBlock(whole.width, whole.height, channels, room)};
-    if (!is_full) state.pixels.clear();
+    state.pixels = block_of(parts, whole, room);
     std::size_t first = 0;
     for (std::size_t p = 0; p < parts.size(); ++p) {
-      const auto its = state.pixels.channels().subspan(first, names[p].size());
-      read_pixels(*reader, p, Packing(its), state.area_of(parts[p].data), state.pixels);
+      const auto its = state.pixels.channels().subspan(first, parts[p].channels.size());
+      read_pixels(*reader, p, Packing(its), state.area_of(parts[p].description.data), state.pixels);
       first += its.size();
-      Part part;
-      for (std::size_t c = 0; c < names[p].size(); ++c)
-        part.channels.push_back({names[p][c], parts[p].channels[c].name});
-      part.description = std::move(parts[p]);
-      part.description.channels.clear();
-      state.parts.push_back(std::move(part));
+      parts[p].description.channels.clear();
     }
+    state.parts = std::move(parts);
+    state.header = merged(headers);
     return picture;
   } catch (const Error&) {
     throw;
   } catch (const std::exception& error) {
     unreadable(path, error.what());
+  }
+}
+
+void Picture::join(const std::filesystem::path& path) {
+  const std::string prefix = path.string() + ':';
+  const bool is_there = std::any_of(channels().begin(), channels().end(),
+                                    [&](const Channel& channel) { return channel.name.starts_with(prefix); });
+  if (is_there) return;
+  const Picture other = read(path);
+  if (other.display_window() != display_window()) {
+    throw Error(ErrorCode::input_unsupported, escaped(path.string()),
+                "a display window of " + text_of(other.display_window()), text_of(display_window()));
+  }
+  Part part = other.state_->parts.front();
+  part.is_written = false;
+  part.channels.clear();
+  std::vector<ChannelName> more;
+  for (const Channel& channel : other.channels()) {
+    more.push_back({prefix + channel.name, channel.format});
+    part.channels.push_back({prefix + channel.name, channel.name});
+  }
+  if (channels().size() + more.size() > static_cast<std::size_t>(max_channels))
+    throw Error(ErrorCode::input_unsupported, escaped(path.string()), std::to_string(more.size()) + " more channels",
+                "at most " + std::to_string(max_channels) + " in all");
+  const std::size_t first = channels().size();
+  state_->pixels.add(more);
+  state_->parts.push_back(std::move(part));
+
+  const Packing from(other.channels());
+  const Packing to(channels().subspan(first));
+  const Window shared = overlap(data_window(), other.data_window());
+  if (shared.width <= 0 || shared.height <= 0) return;
+  std::vector<std::byte> row(from.pixel_bytes() * static_cast<std::size_t>(shared.width));
+  Area theirs = other.state_->area_of(shared);
+  Area ours = state_->area_of(shared);
+  theirs.rows = ours.rows = 1;
+  for (int y = 0; y < shared.height; ++y, ++theirs.y, ++ours.y) {
+    other.state_->pixels.pack(from, row.data(), theirs);
+    state_->pixels.unpack(to, row.data(), ours);
   }
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "dermis/exr.hpp"
+#include "exr/header.hpp"
 #include "exr/image_library.hpp"
 #include "exr/pixel_block.hpp"
 
@@ -24,8 +25,9 @@ struct Part {
 
 struct Picture::State {
   std::vector<Part> parts;
-  Window data;        ///< around the data windows of all parts
-  PixelBlock pixels;  ///< of the data window; zero where a part has none
+  Window data;         ///< around the data windows of all parts
+  PixelBlock pixels;   ///< of the data window; zero where a part has none
+  Header header = {};  ///< as it stands in the file, and what was set since
 
   /// The window in pixels of the block.
   Area area_of(const Window& window) const {

@@ -25,6 +25,14 @@ std::vector<std::string_view> split(std::string_view text, char separator) {
   return parts;
 }
 
+/// The file of "FILE.exr:CHANNEL" or "FILE.exr"; empty if a name is of no file.
+std::string_view file_in(std::string_view name) {
+  constexpr std::string_view ending = ".exr";
+  const std::string lower_name = lower(name);
+  const std::size_t at = lower_name.ends_with(ending) ? lower_name.size() - ending.size() : lower_name.find(".exr:");
+  return at == std::string::npos ? std::string_view() : name.substr(0, at + ending.size());
+}
+
 [[noreturn]] void malformed(std::string_view text, std::string_view wanted) {
   throw Error(ErrorCode::usage, "role", '"' + escaped(text) + '"', wanted);
 }
@@ -43,13 +51,17 @@ Override::Override(std::string_view text) : text_(text) {
 }
 
 ChannelSum Override::resolve(const Catalogue& catalogue) const {
+  if (trimmed(channels_).empty()) return {};
   ChannelSum sum;
   for (const std::string_view group : split(channels_, '+')) sum.push_back(resolve_group(catalogue, split(group, ',')));
   return sum;
 }
 
 std::vector<std::string> Override::resolve_group(const Catalogue& catalogue,
-                                                 const std::vector<std::string_view>& names) const {
+                                                 std::vector<std::string_view> names) const {
+  const std::string whole_file = std::string(names.front()) + ':';
+  if (names.size() == 1 && !names.front().empty() && file_in(names.front()) == names.front())
+    names.front() = whole_file;
   const std::size_t values = info_of(role_).values;
   const bool empty = std::any_of(names.begin(), names.end(), [](std::string_view name) { return name.empty(); });
   if (empty || (names.size() != 1 && names.size() != values)) {
@@ -67,6 +79,16 @@ std::vector<std::string> Override::resolve_group(const Catalogue& catalogue,
     malformed(text_, "three channels, or a prefix of .R .G .B or .X .Y .Z");
   }
   return group.empty() ? std::vector<std::string>{existing(catalogue, names[0])} : group;
+}
+
+std::vector<std::string> Override::files() const {
+  std::vector<std::string> files;
+  for (const std::string_view group : split(channels_, '+')) {
+    for (const std::string_view name : split(group, ',')) {
+      if (const std::string_view file = file_in(name); !file.empty()) files.emplace_back(file);
+    }
+  }
+  return files;
 }
 
 std::string Override::existing(const Catalogue& catalogue, std::string_view wanted) const {

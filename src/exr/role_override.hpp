@@ -10,7 +10,7 @@
 
 namespace dermis::exr {
 
-/// "role=channels", see find_roles.
+/// "role=channels", see RoleRequest.
 class Override {
  public:
   /// Keeps no copy of `text`. Throws Error(usage) if it names no role.
@@ -21,8 +21,11 @@ class Override {
   /// Throws Error(usage) if the channels are malformed, Error(role_missing) if one is not there.
   ChannelSum resolve(const Catalogue& catalogue) const;
 
+  /// The files that its channels are of, if they are of others than the picture.
+  std::vector<std::string> files() const;
+
  private:
-  std::vector<std::string> resolve_group(const Catalogue& catalogue, const std::vector<std::string_view>& names) const;
+  std::vector<std::string> resolve_group(const Catalogue& catalogue, std::vector<std::string_view> names) const;
   std::string existing(const Catalogue& catalogue, std::string_view wanted) const;
 
   std::string_view text_;

@@ -8,6 +8,7 @@
 
 #include "dermis/error.hpp"
 #include "dermis/exr.hpp"
+#include "exr/any_renderer.hpp"
 #include "exr/channel_catalogue.hpp"
 #include "exr/message_text.hpp"
 #include "exr/role_override.hpp"
@@ -15,46 +16,24 @@
 namespace dermis::exr {
 namespace {
 
-/// One pass of a role. A role is the sum of its passes.
-struct Pass {
-  Role role;
-  std::array<std::optional<std::string_view>, 2> names;  ///< in lower case: Blender up to 4, then 5 if that differs
-};
-
-/// The names that renderers give channels. "" stands for R, G and B of the layer itself.
-constexpr std::array passes = {
-    Pass{Role::light, {"diffdir", "diffuse direct"}},
-    Pass{Role::light, {"diffind", "diffuse indirect"}},
-    Pass{Role::albedo, {"diffcol", "diffuse color"}},
-    Pass{Role::depth, {"depth", "z"}},
-    Pass{Role::position, {"position"}},
-    Pass{Role::normal, {"normal"}},
-    Pass{Role::material, {"indexma", "material index"}},
-    Pass{Role::mask, {"mask"}},
-    Pass{Role::specular, {"glossdir", "glossy direct"}},
-    Pass{Role::specular, {"glossind", "glossy indirect"}},
-    Pass{Role::beauty, {"combined", ""}},
-    Pass{Role::thickness, {"thickness"}},
-};
-
-std::vector<std::string> find_pass(const Catalogue& catalogue, std::string_view layer, const Pass& pass) {
-  for (const auto& name : pass.names) {
-    if (!name) break;
-    const std::string prefix = with_dot(layer, *name);
+std::vector<std::string> find_pass(const Catalogue& catalogue, std::string_view layer, const Renderer::Pass& pass) {
+  const bool is_triple = info_of(pass.role).values == 3;
+  for (const std::string& name : pass.names) {
+    const std::string prefix = with_dot(layer, name);
     // Plain X, Y, Z outside passes are no picture.
-    const auto choices = std::span(triple_endings).first(name->empty() ? 1 : 2);
-    std::vector<std::string> group =
-        info_of(pass.role).values == 3 ? catalogue.triple(prefix, choices) : catalogue.single(prefix);
+    const auto choices = std::span(triple_endings).first(name.empty() ? 1 : 2);
+    if (name.empty() && !is_triple) continue;
+    std::vector<std::string> group = is_triple ? catalogue.triple(prefix, choices) : catalogue.single(prefix);
     if (!group.empty()) return group;
   }
   return {};
 }
 
 /// The passes of a role in a layer. What a layer lacks may stand outside all layers.
-ChannelSum find_role(const Catalogue& catalogue, std::string_view layer, Role role) {
+ChannelSum find_role(const Catalogue& catalogue, std::string_view layer, const Renderer& renderer, Role role) {
   for (const std::string_view place : {layer, std::string_view()}) {
     ChannelSum sum;
-    for (const Pass& pass : passes) {
+    for (const Renderer::Pass& pass : renderer.passes) {
       if (pass.role == role) {
         if (std::vector<std::string> group = find_pass(catalogue, place, pass); !group.empty()) {
           sum.push_back(std::move(group));
@@ -68,13 +47,14 @@ ChannelSum find_role(const Catalogue& catalogue, std::string_view layer, Role ro
 
 /// Cuts "pass.ending" from the right of a lower-case name: a layer's name may hold dots and spaces. False if `name` is
 /// not of the pass.
-bool cut_pass(std::string_view& name, const Pass& pass) {
+bool cut_pass(std::string_view& name, const Renderer::Pass& pass) {
   const std::size_t dot = name.rfind('.');
   if (dot == std::string_view::npos) return false;
   const std::string_view before_ending = name.substr(0, dot);
-  for (const auto& pass_name : pass.names) {
-    if (!pass_name || pass_name->empty() || !before_ending.ends_with(*pass_name)) continue;
-    const std::size_t layer_size = before_ending.size() - pass_name->size();
+  for (const std::string& pass_name : pass.names) {
+    const std::string wanted = lower(pass_name);
+    if (wanted.empty() || !before_ending.ends_with(wanted)) continue;
+    const std::size_t layer_size = before_ending.size() - wanted.size();
     if (layer_size == 0 || name[layer_size - 1] == '.') {
       name = name.substr(0, layer_size == 0 ? 0 : layer_size - 1);
       return true;
@@ -84,13 +64,14 @@ bool cut_pass(std::string_view& name, const Pass& pass) {
 }
 
 /// The layers that have a pass of the role, or of any role, in the order of the channels, each once.
-std::vector<std::string> layers_with(const Catalogue& catalogue, std::optional<Role> role) {
+std::vector<std::string> layers_with(const Catalogue& catalogue, const Renderer& renderer, std::optional<Role> role) {
   std::vector<std::string> layers;
   for (std::size_t i = 0; i < catalogue.size(); ++i) {
-    for (const Pass& pass : passes) {
+    if (catalogue.is_joined(i)) continue;
+    for (const Renderer::Pass& pass : renderer.passes) {
       std::string_view layer = catalogue.lower_name_at(i);
       if ((!role || pass.role == *role) && cut_pass(layer, pass)) {
-        std::string name = catalogue.name_at(i).substr(0, layer.size());
+        std::string name = catalogue.short_name_at(i).substr(0, layer.size());
         if (std::find(layers.begin(), layers.end(), name) == layers.end()) layers.push_back(std::move(name));
       }
     }
@@ -106,28 +87,66 @@ std::string listed(const std::vector<std::string>& layers) {
   return out;
 }
 
-std::string named_layer(const Catalogue& catalogue, std::string_view wanted) {
+std::string named_layer(const Catalogue& catalogue, const Renderer& renderer, std::string_view wanted) {
   const std::string prefix = lower(wanted) + '.';
   std::string any_case;
   for (std::size_t i = 0; i < catalogue.size(); ++i) {
     if (!catalogue.lower_name_at(i).starts_with(prefix)) continue;
-    std::string name = catalogue.name_at(i).substr(0, wanted.size());
+    std::string name = catalogue.short_name_at(i).substr(0, wanted.size());
     if (name == wanted) return name;
     if (any_case.empty()) any_case = std::move(name);
   }
   if (any_case.empty()) {
-    const std::string layers = listed(layers_with(catalogue, std::nullopt));
+    const std::string layers = listed(layers_with(catalogue, renderer, std::nullopt));
     throw Error(ErrorCode::role_missing, "layer", escaped(wanted),
                 layers.empty() ? "none: there are " + catalogue.all() : "one of " + layers);
   }
   return any_case;
 }
 
-std::string chosen_layer(const Catalogue& catalogue, std::string_view wanted) {
-  if (!wanted.empty()) return named_layer(catalogue, wanted);
-  std::vector<std::string> layers = layers_with(catalogue, Role::light);
-  if (layers.empty()) layers = layers_with(catalogue, std::nullopt);
+/// The layer that a renderer's passes are in: the first with its light, else with any of its passes, else with any
+/// pass.
+std::string chosen_layer(const Catalogue& catalogue, const Renderer& renderer) {
+  std::vector<std::string> layers = layers_with(catalogue, renderer, Role::light);
+  if (layers.empty()) layers = layers_with(catalogue, renderer, std::nullopt);
+  if (layers.empty()) layers = layers_with(catalogue, any_renderer, std::nullopt);
   return layers.empty() ? "" : layers.front();
+}
+
+bool may_be_of(const Catalogue& catalogue, const Renderer& renderer) {
+  return renderer.marks.empty() || std::any_of(renderer.marks.begin(), renderer.marks.end(),
+                                               [&](const std::string& mark) { return !catalogue.find(mark).empty(); });
+}
+
+/// How many of a renderer's passes are there; 0 without its light.
+std::size_t count_passes(const Catalogue& catalogue, std::string_view layer, const Renderer& renderer) {
+  if (!may_be_of(catalogue, renderer) || find_role(catalogue, layer, renderer, Role::light).empty()) return 0;
+  std::size_t count = 0;
+  for (const RoleInfo& info : role_table) count += find_role(catalogue, layer, renderer, info.role).size();
+  return count;
+}
+
+/// The renderer that has most of its passes there, the earlier one of two that have as many; nullptr if none has light.
+const Renderer* likeliest_renderer(const Catalogue& catalogue, std::string_view layer) {
+  const Renderer* best = nullptr;
+  std::size_t most = 0;
+  for (const Renderer& renderer : renderers()) {
+    const std::string its_layer = layer.empty() ? chosen_layer(catalogue, renderer) : std::string(layer);
+    const std::size_t count = count_passes(catalogue, its_layer, renderer);
+    if (count > most) {
+      most = count;
+      best = &renderer;
+    }
+  }
+  return best;
+}
+
+void check_view(const Picture& picture, std::string_view view) {
+  if (view.empty()) return;
+  const std::vector<std::string> views = picture.views();
+  if (std::find(views.begin(), views.end(), view) == views.end())
+    throw Error(ErrorCode::role_missing, "view", escaped(view),
+                views.empty() ? "none, for the picture has no views" : "one of " + listed(views));
 }
 
 }  // namespace
@@ -145,15 +164,47 @@ std::string role_names() {
   return out;
 }
 
-Roles find_roles(const Picture& picture, std::span<const std::string> overrides, std::string_view layer) {
+Roles find_roles(const Picture& picture, const RoleRequest& request) {
   std::vector<Override> parsed;
-  for (const std::string& text : overrides) parsed.emplace_back(text);
-  const Catalogue catalogue(picture);
+  for (const std::string& text : request.overrides) parsed.emplace_back(text);
+  check_view(picture, request.view);
+  const Catalogue catalogue(picture, request.view);
+  const Renderer* likeliest =
+      request.renderer != nullptr ? request.renderer : likeliest_renderer(catalogue, request.layer);
+  // A picture without light may still be lit, or looked at.
+  const Renderer& renderer = likeliest != nullptr ? *likeliest : renderers().front();
+  const std::vector<std::string> views = picture.views();
   Roles roles;
-  roles.layer = chosen_layer(catalogue, layer);
-  for (const RoleInfo& info : role_table) roles[info.role] = find_role(catalogue, roles.layer, info.role);
-  for (const Override& change : parsed) roles[change.role()] = change.resolve(catalogue);
+  roles.view = request.view.empty() && !views.empty() ? views.front() : request.view;
+  roles.layer =
+      request.layer.empty() ? chosen_layer(catalogue, renderer) : named_layer(catalogue, renderer, request.layer);
+  for (const Renderer* names : {&renderer, &any_renderer}) {
+    for (const RoleInfo& info : role_table) {
+      if (roles.has(info.role)) continue;
+      roles[info.role] = find_role(catalogue, roles.layer, *names, info.role);
+      if (roles.has(info.role)) roles.rules[static_cast<std::size_t>(info.role)] = names->name;
+    }
+  }
+  if (roles.has(Role::light)) {
+    roles.renderer = renderer.name;
+    roles.lighting = renderer.lighting;
+  }
+  for (const Override& change : parsed) {
+    roles[change.role()] = change.resolve(catalogue);
+    roles.rules[static_cast<std::size_t>(change.role())] = "--role";
+    if (change.role() == Role::light) roles.renderer.clear();
+  }
   return roles;
+}
+
+std::vector<std::string> files_of(std::span<const std::string> overrides) {
+  std::vector<std::string> files;
+  for (const std::string& text : overrides) {
+    for (std::string& file : Override(text).files()) {
+      if (std::find(files.begin(), files.end(), file) == files.end()) files.push_back(std::move(file));
+    }
+  }
+  return files;
 }
 
 std::vector<float> load(const Picture& picture, const Roles& roles, Role role) {
@@ -180,7 +231,8 @@ void require(const Picture& picture, const Roles& roles, Role role) {
   if (!roles.has(role)) {
     const std::string name(name_of(role));
     throw Error(ErrorCode::role_missing, name, "no such channel among " + channel_list(picture),
-                "a Cycles pass for it, or --role " + name + "=CHANNELS");
+                "a pass for it by the names of " + (roles.renderer.empty() ? renderer_names() : roles.renderer) +
+                    ", or --role " + name + "=CHANNELS (FILE:CHANNELS if another file has it)");
   }
 }
 

@@ -75,7 +75,7 @@ void require_view_layer(const Roles& roles, const std::string& layer, bool blend
 }
 
 Failure finding(const Picture& picture, const Names& overrides, std::string_view layer = {}) {
-  return failure_of([&] { find_roles(picture, overrides, layer); });
+  return failure_of([&] { find_roles(picture, {.overrides = overrides, .layer = std::string(layer)}); });
 }
 
 }  // namespace
@@ -97,17 +97,17 @@ TEST_CASE("names are matched in any case") {
 TEST_CASE("the layer is the first with diffuse light, or the one asked for") {
   const Picture picture = picture_of(of("Sky.Combined", "RGB") + view_layer("Back", false) + view_layer("front", true));
   require_view_layer(find_roles(picture), "Back", false);
-  require_view_layer(find_roles(picture, {}, "front"), "front", true);
-  require_view_layer(find_roles(picture, {}, "FRONT"), "front", true);
-  REQUIRE(find_roles(picture, {}, "Sky").layer == "Sky");
-  REQUIRE_FALSE(find_roles(picture, {}, "Sky").has(Role::light));
+  require_view_layer(find_roles(picture, {.layer = "front"}), "front", true);
+  require_view_layer(find_roles(picture, {.layer = "FRONT"}), "front", true);
+  REQUIRE(find_roles(picture, {.layer = "Sky"}).layer == "Sky");
+  REQUIRE_FALSE(find_roles(picture, {.layer = "Sky"}).has(Role::light));
   const Failure unknown = finding(picture, {}, "middle");
   REQUIRE(unknown.code == ErrorCode::role_missing);
   REQUIRE(unknown.says("Sky, Back, front"));
 
   const Picture alike = picture_of(view_layer("A", false) + view_layer("a", false));
-  require_view_layer(find_roles(alike, {}, "a"), "a", false);
-  require_view_layer(find_roles(alike, {}, "A"), "A", false);
+  require_view_layer(find_roles(alike, {.layer = "a"}), "a", false);
+  require_view_layer(find_roles(alike, {.layer = "A"}), "A", false);
 }
 
 TEST_CASE("passes may stand outside layers") {
@@ -148,7 +148,7 @@ TEST_CASE("half a group is no role") {
 TEST_CASE("overrides name channels, prefixes and sums") {
   const Picture picture =
       picture_of(view_layer("L", false) + of("my.light", "RGB") + of("V", "XYZ") + Names{"wax", "id.X"});
-  const auto found = [&](const std::string& text) { return find_roles(picture, Names{text}); };
+  const auto found = [&](const std::string& text) { return find_roles(picture, {.overrides = {text}}); };
   require_role(found("light=my.light"), Role::light, {of("my.light", "RGB")});
   require_role(found("light=my.light.R, my.light.G ,my.light.B"), Role::light, {of("my.light", "RGB")});
   require_role(found("Light = L.DiffDir + MY.light"), Role::light, {of("L.DiffDir", "RGB"), of("my.light", "RGB")});
@@ -161,9 +161,8 @@ TEST_CASE("overrides name channels, prefixes and sums") {
 
 TEST_CASE("malformed overrides are usage errors, unknown channels missing roles") {
   const Picture picture = picture_of(view_layer("L", false));
-  for (const char* text :
-       {"light", "", "=L.DiffDir", "lamp=L.DiffDir", "light=", "light=L.DiffDir+", "light=L.DiffDir.R",
-        "light=L.DiffDir.R,L.DiffDir.G", "depth=L.Depth.Z,L.Depth.Z,L.Depth.Z", "light=,,"}) {
+  for (const char* text : {"light", "", "=L.DiffDir", "lamp=L.DiffDir", "light=L.DiffDir+", "light=L.DiffDir.R",
+                           "light=L.DiffDir.R,L.DiffDir.G", "depth=L.Depth.Z,L.Depth.Z,L.Depth.Z", "light=,,"}) {
     INFO(text);
     REQUIRE(finding(picture, {text}).code == ErrorCode::usage);
   }
@@ -176,6 +175,210 @@ TEST_CASE("malformed overrides are usage errors, unknown channels missing roles"
     REQUIRE(failure.says("L.GlossInd.G"));
     REQUIRE(failure.says(std::string(text).substr(0, 5)));
   }
+}
+
+TEST_CASE("a role is unset by an override of nothing") {
+  const Picture picture = picture_of(view_layer("L", false));
+  REQUIRE(find_roles(picture).has(Role::depth));
+  const Roles roles = find_roles(picture, {.overrides = {"depth=", "albedo= "}});
+  REQUIRE_FALSE(roles.has(Role::depth));
+  REQUIRE_FALSE(roles.has(Role::albedo));
+  REQUIRE(roles.has(Role::light));
+}
+
+TEST_CASE("each renderer's passes are found by its table, with the light raw or lit as it writes it") {
+  // Names as the documents of the renderers, and files of theirs, have them; not those of the tables.
+  struct Written {
+    std::string renderer;
+    dermis::Lighting lighting;
+    Names channels;
+    ChannelSum light;
+    ChannelSum albedo;
+    Names without;  ///< roles that the picture does not have
+  };
+  const auto lit = dermis::Lighting::lit;
+  const auto raw = dermis::Lighting::raw;
+  const Names rgba = {"R", "G", "B", "A"};
+  const std::vector<Written> all = {
+      {"arnold",
+       lit,
+       rgba + of("diffuse_direct", "RGB") + of("diffuse_indirect", "RGB") + of("diffuse_albedo", "RGB") +
+           of("specular_direct", "RGB") + Names{"Z"} + of("N", "XYZ") + of("P", "XYZ"),
+       {of("diffuse_direct", "RGB"), of("diffuse_indirect", "RGB")},
+       {of("diffuse_albedo", "RGB")},
+       {"material"}},
+      {"karma",
+       lit,
+       of("C", "RGBA") + of("diffuse_direct", "rgb") + of("diffuse_indirect", "rgb") + of("albedo", "rgb") +
+           Names{"depth"} + of("N", "xyz") + of("P", "xyz"),
+       {of("diffuse_direct", "rgb"), of("diffuse_indirect", "rgb")},
+       {of("albedo", "rgb")},
+       {"material"}},
+      {"redshift",
+       raw,
+       rgba + of("DiffuseLightingRaw", "RGB") + of("GlobalIlluminationRaw", "RGB") + of("DiffuseFilter", "RGB") +
+           Names{"Depth.Z", "ObjectID.R"} + of("Normals", "RGB"),
+       {of("DiffuseLightingRaw", "RGB"), of("GlobalIlluminationRaw", "RGB")},
+       {of("DiffuseFilter", "RGB")},
+       {"position"}},
+      {"vray",
+       raw,
+       rgba + of("VRayRawLighting", "RGB") + of("VRayRawGlobalIllumination", "RGB") + of("VRayDiffuseFilter", "RGB") +
+           Names{"VRayZDepth.R", "VRayMtlID.R"} + of("VRayNormals", "XYZ"),
+       {of("VRayRawLighting", "RGB"), of("VRayRawGlobalIllumination", "RGB")},
+       {of("VRayDiffuseFilter", "RGB")},
+       {"position"}},
+      {"vray",
+       raw,
+       rgba + of("rawLight", "RGB") + of("rawGI", "RGB") + of("diffuse", "RGB") + Names{"zDepth.R", "mtlID.R"},
+       {of("rawLight", "RGB"), of("rawGI", "RGB")},
+       {of("diffuse", "RGB")},
+       {"position", "normal"}},
+      {"renderman",
+       lit,
+       rgba + of("diffuse", "rgb") + of("indirectdiffuse", "rgb") + of("albedo", "rgb") + Names{"z", "id"} +
+           of("Nn", "xyz") + of("P", "xyz"),
+       {of("diffuse", "rgb"), of("indirectdiffuse", "rgb")},
+       {of("albedo", "rgb")},
+       {}},
+      {"unreal",
+       raw,
+       rgba + of("FinalImageMovieRenderQueue_DiffuseLighting", "RGBA") +
+           of("FinalImageMovieRenderQueue_BaseColor", "RGBA") + of("FinalImageMovieRenderQueue_WorldDepth", "RGBA"),
+       {of("FinalImageMovieRenderQueue_DiffuseLighting", "RGB")},
+       {of("FinalImageMovieRenderQueue_BaseColor", "RGB")},
+       {"position", "normal", "material"}},
+      {"mitsuba",
+       lit,
+       of("path", "RGBA") + of("albedo", "RGB") + Names{"dd.T", "mat.I"} + of("pos", "XYZ") + of("nn", "XYZ"),
+       {of("path", "RGB")},
+       {of("albedo", "RGB")},
+       {}},
+      {"pbrt",
+       lit,
+       Names{"R", "G", "B", "dzdx", "dzdy"} + of("Albedo", "RGB") + of("P", "XYZ") + of("N", "XYZ"),
+       {{"R", "G", "B"}},
+       {of("Albedo", "RGB")},
+       {"depth", "material"}},
+  };
+  for (const Written& written : all) {
+    INFO(written.renderer);
+    const Picture picture = picture_of(written.channels);
+    const Roles roles = find_roles(picture);
+    REQUIRE(roles.renderer == written.renderer);
+    REQUIRE(roles.lighting == written.lighting);
+    REQUIRE(roles.rules[static_cast<std::size_t>(Role::light)] == written.renderer);
+    require_role(roles, Role::light, written.light);
+    require_role(roles, Role::albedo, written.albedo);
+    for (const Role role : {Role::depth, Role::position, Role::normal, Role::material}) {
+      const std::string name(dermis::exr::name_of(role));
+      INFO(name);
+      const bool expected = std::find(written.without.begin(), written.without.end(), name) == written.without.end();
+      REQUIRE(roles.has(role) == expected);
+    }
+    REQUIRE(roles.has(Role::beauty));
+    // By its name it is found as well, in a picture that holds another renderer's passes too.
+    const Picture both = picture_of(written.channels + view_layer("L", false));
+    REQUIRE(find_roles(both).renderer == "blender");
+    const dermis::exr::Renderer* renderer = dermis::exr::find_renderer(written.renderer);
+    require_role(find_roles(both, {.renderer = renderer}), Role::light, written.light);
+  }
+}
+
+TEST_CASE("a map of a studio's own names finds roles as a renderer's table does") {
+  const dermis::exr::Renderer studio{.name = "studio",
+                                     .lighting = dermis::Lighting::lit,
+                                     .passes = {{Role::light, {"key_light"}},
+                                                {Role::light, {"fill", "bounce"}},
+                                                {Role::albedo, {"tex"}},
+                                                {Role::material, {"mid"}}}};
+  const Picture picture = picture_of(of("Shot.key_light", "RGB") + of("Shot.bounce", "RGB") + of("Shot.tex", "RGB") +
+                                     Names{"Shot.mid.X", "Shot.Depth.Z"});
+  const Roles roles = find_roles(picture, {.renderer = &studio});
+  REQUIRE(roles.layer == "Shot");
+  REQUIRE(roles.lighting == dermis::Lighting::lit);
+  require_role(roles, Role::light, {of("Shot.key_light", "RGB"), of("Shot.bounce", "RGB")});
+  require_role(roles, Role::material, {{"Shot.mid.X"}});
+  require_role(roles, Role::depth, {{"Shot.Depth.Z"}});
+  REQUIRE_FALSE(find_roles(picture).has(Role::light));
+}
+
+TEST_CASE("each view of a stereo picture has its own roles") {
+  const auto with_view = [](const Names& names, const std::string& view, bool first) {
+    Names out;
+    for (const std::string& name : names) {
+      const std::size_t dot = name.rfind('.');
+      out.push_back(first ? view + '.' + name : name.substr(0, dot) + '.' + view + name.substr(dot));
+    }
+    return out;
+  };
+  const Names passes = of("L.DiffDir", "RGB") + of("L.DiffCol", "RGB") + of("L.Depth", "Z");
+  for (const bool first : {false, true}) {
+    const Picture picture = picture_of(with_view(passes, "left", first) + with_view(passes, "right", first));
+    REQUIRE(picture.views() == Names{"left", "right"});
+    for (const std::string view : {"left", "right"}) {
+      const Roles roles = find_roles(picture, {.view = view});
+      REQUIRE(roles.view == view);
+      REQUIRE(roles.layer == "L");
+      require_role(roles, Role::light, {with_view(of("L.DiffDir", "RGB"), view, first)});
+      require_role(roles, Role::depth, {with_view({"L.Depth.Z"}, view, first)});
+    }
+    REQUIRE(find_roles(picture).view == "left");
+    const Failure failure = failure_of([&] { find_roles(picture, {.view = "middle"}); });
+    REQUIRE(failure.code == ErrorCode::role_missing);
+    REQUIRE(failure.says("one of left, right"));
+    const std::string view_of_test = "right";
+    // A whole name is found whatever the view.
+    const Names other = with_view(of("L.DiffCol", "RGB"), "right", first);
+    const std::string text = "albedo=" + other[0] + "," + other[1] + "," + other[2];
+    REQUIRE_FALSE(failure_of([&] { find_roles(picture, {.overrides = {text}, .view = view_of_test}); }).code);
+  }
+  // Channels that name no view are of the default one alone.
+  const Picture mixed =
+      picture_of(passes + with_view(passes, "left", false) + with_view(of("L.DiffDir", "RGB"), "right", false));
+  REQUIRE_FALSE(find_roles(mixed, {.view = "right"}).has(Role::depth));
+  REQUIRE(picture_of(view_layer("left", false)).views().empty());
+}
+
+TEST_CASE("a role may lie in another file, which is read and not written") {
+  const TemporaryFolder folder;
+  Picture depth({2, 1, 3, 2}, {0, 0, 8, 4});
+  depth.add_channels(Names{"Z"}, Format::f32);
+  const dermis::OutputImage view = depth.view_to_write(Names{"Z"});
+  for (int y = 0; y < 2; ++y) {
+    for (int x = 0; x < 3; ++x) {
+      const auto value = static_cast<float>(10 * y + x + 1);
+      std::memcpy(static_cast<std::byte*>(view.host) + view.layout.offset + y * view.layout.row_stride +
+                      x * view.layout.pixel_stride,
+                  &value, sizeof value);
+    }
+  }
+  const std::string path = folder / "depth.0007.exr";
+  depth.write(path);
+  Picture picture({0, 0, 4, 4}, {0, 0, 8, 4});
+  picture.add_channels(of("DiffDir", "RGB"), Format::f16);
+  for (const std::string& text : {"depth=" + path + ":Z", "depth=" + path, "depth= " + path + ":z "}) {
+    INFO(text);
+    const Names overrides = {text};
+    REQUIRE(dermis::exr::files_of(overrides) == Names{path});
+    picture.join(path);
+    const Roles roles = find_roles(picture, {.overrides = overrides});
+    require_role(roles, Role::depth, {{path + ":Z"}});
+    const std::vector<float> values = load(picture, roles, Role::depth);
+    REQUIRE(values == std::vector<float>{0, 0, 0, 0, 0, 0, 1, 2, 0, 0, 11, 12, 0, 0, 0, 0});
+    picture.add_channels(Names{"sss.R"}, Format::f32);
+  }
+  picture.write(folder / "out.exr");
+  const Picture written = Picture::read(folder / "out.exr");
+  REQUIRE(written.channels().size() == 4);
+  REQUIRE(written.data_window() == picture.data_window());
+
+  Picture other({0, 0, 4, 4}, {0, 0, 7, 4});
+  other.add_channels(of("DiffDir", "RGB"), Format::f32);
+  const Failure failure = failure_of([&] { other.join(path); });
+  REQUIRE(failure.code == ErrorCode::input_unsupported);
+  REQUIRE(failure.says("a display window of 8 x 4 at (0, 0)"));
+  REQUIRE(failure_of([&] { other.join(folder / "none.exr"); }).code == ErrorCode::input_missing);
 }
 
 TEST_CASE("load sums the groups of a role pixel by pixel") {
