@@ -10,6 +10,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "dermis/device.hpp"
@@ -109,6 +110,10 @@ struct Options {
   /// Pixels of a tile: a multiple of 16 across; 0 = what suits the device. The result does not depend on it.
   int tile_width = 0;
   int tile_height = 0;
+  /// A folder in which taps are kept for later processes, which then need not fit them: at most 64 MB, of which the
+  /// longest unused go first. It is made if it is missing. A folder that can_keep_taps refuses, and files that are
+  /// damaged, are as if they were not there; the result does not depend on it. Empty: nothing is kept.
+  std::string cache_folder = {};
 
   bool operator==(const Options&) const = default;
 };
@@ -125,6 +130,10 @@ struct ChosenTaps {
 /// a design has a tolerance and Material::pixel_mm is known, choose_design decides about it. Throws Error(usage) for
 /// what is out of range or contradicts.
 ChosenTaps choose_taps(std::vector<Material> materials, Options options);
+
+/// Whether Options::cache_folder can be this: it is there or can be made, it belongs to the user of this process, and
+/// nobody else may write to it.
+bool can_keep_taps(const std::string& folder);
 
 /// The taps of a material for pixels of one size.
 struct MaterialTaps {
@@ -274,6 +283,10 @@ class Plan {
 
   /// Bytes of device memory that a run needs beyond the images of the caller.
   std::size_t scratch_bytes(int width, int height) const;
+
+  /// The same of the plan that these would make, without building its kernels. Throws as the constructor.
+  static std::size_t scratch_bytes(const Device& device, std::vector<Material> materials,
+                                   const FrameDescription& frames, const Options& options, int width, int height);
 
   struct State;  ///< not for callers
 

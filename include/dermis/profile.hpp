@@ -130,6 +130,7 @@ class Profile {
   double width_at(double albedo) const;
 
  private:
+  friend struct ProfileContent content_of(const Profile& profile);
   explicit Profile(std::array<std::shared_ptr<const RadialCurve>, 3> curves);
   const RadialCurve& curve(int channel) const { return *curves_[static_cast<std::size_t>(channel)]; }
 

@@ -6,12 +6,14 @@
 #include <numbers>
 #include <sstream>
 #include <string>
+#include <typeinfo>
 #include <utility>
 
 #include "dermis/error.hpp"
 #include "profile/burley_curve.hpp"
 #include "profile/dipole_curve.hpp"
 #include "profile/gaussian_curve.hpp"
+#include "profile/profile_content.hpp"
 #include "profile/table_curve.hpp"
 
 namespace dermis {
@@ -210,6 +212,17 @@ bool Profile::operator==(const Profile& other) const {
   const auto same = [](const auto& a, const auto& b) { return a == b || *a == *b; };
   return width_follows_albedo_ == other.width_follows_albedo_ &&
          std::equal(curves_.begin(), curves_.end(), other.curves_.begin(), same);
+}
+
+ProfileContent content_of(const Profile& profile) {
+  ProfileContent content;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const RadialCurve& curve = *profile.curves_[c];
+    content.kinds[c] = typeid(curve).name();
+    content.numbers[c] = curve.numbers();
+  }
+  content.width_follows_albedo = profile.width_follows_albedo_;
+  return content;
 }
 
 double Profile::radial(int channel, double r_mm) const { return curve(channel).radial(r_mm); }

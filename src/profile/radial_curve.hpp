@@ -46,7 +46,6 @@ class RadialCurve {
   /// Distances > 0, ascending, at which the curve is not smooth.
   virtual std::span<const double> knots() const { return {}; }
 
- private:
   /// All numbers that the curve is made of.
   virtual std::vector<double> numbers() const = 0;
 };

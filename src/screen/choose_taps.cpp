@@ -7,6 +7,7 @@
 #include "dermis/plan.hpp"
 #include "opencl/recent.hpp"
 #include "taps/check_design.hpp"
+#include "taps/kept/kept_taps.hpp"
 
 namespace dermis {
 
@@ -46,18 +47,20 @@ struct ChoiceKey {
 };
 
 /// choose_design for the plans of one camera after the other, which ask for the same.
-DesignChoice design_for(const ChoiceKey& key) {
+DesignChoice design_for(const ChoiceKey& key, const std::string& cache_folder) {
   static Recent<ChoiceKey, DesignChoice> choices(256, [](const DesignChoice&) { return 1; });
-  return choices.get(key, [&] { return choose_design(key.profile, key.wanted, key.pixel_mm); });
+  return choices.get(key, [&] { return kept_choice(cache_folder, key.profile, key.wanted, key.pixel_mm); });
 }
 
 /// The designs of the materials that have a tolerance and a size of pixels, by that. Returns those that miss it.
-std::vector<std::size_t> choose_designs(std::vector<Material>& materials) {
+std::vector<std::size_t> choose_designs(std::vector<Material>& materials, const std::string& cache_folder) {
   std::vector<std::future<DesignChoice>> choices(materials.size());
   for (std::size_t i = 0; i < materials.size(); ++i) {
     const Material& material = materials[i];
     if (material.taps->tolerance > 0 && material.pixel_mm > 0)
-      choices[i] = std::async([&] { return design_for({material.profile, *material.taps, material.pixel_mm}); });
+      choices[i] = std::async([&] {
+        return design_for({material.profile, *material.taps, material.pixel_mm}, cache_folder);
+      });
   }
   std::vector<std::size_t> missed;
   for (std::size_t i = 0; i < materials.size(); ++i) {
@@ -88,7 +91,7 @@ ChosenTaps choose_taps(std::vector<Material> materials, Options options) {
     if (!material.taps) material.taps = options.taps;
   }
   std::vector<std::size_t> missed;
-  if (options.method == Method::separable) missed = choose_designs(materials);
+  if (options.method == Method::separable) missed = choose_designs(materials, options.cache_folder);
   if (is_else_exact && !missed.empty()) options.method = Method::exact;
   for (Material& material : materials) {
     if (material.finest_pixel_mm > 0)

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <future>
-#include <memory>
 
 #include "opencl/device_cache.hpp"
+#include "taps/kept/kept_taps.hpp"
 
 namespace dermis {
 
@@ -92,39 +92,43 @@ void append_terms(const Taps& taps, MaterialTables& tables) {
                       nothing);
 }
 
-TapsDesign with_rank(const Device& device, const Profile& profile, const TapsDesign& design) {
-  if (design.rank > 0) return design;
-  return cache_of(device).designs.get({profile, design}, [&] { return with_rank(profile, design); });
-}
-
-std::shared_ptr<const Taps> fitted_taps(const Device& device, const Profile& profile, const TapsDesign& design) {
-  const TapsDesign ranked = with_rank(device, profile, design);
-  return cache_of(device).taps.get({profile, ranked},
-                                   [&] { return std::make_shared<const Taps>(make_taps(profile, ranked)); });
-}
-
 }  // namespace
 
-int most_terms(const Device& device, const std::vector<Material>& materials, const DesignOf& design_of) {
+TapsDesign with_rank(const PlanSettings& settings, const Profile& profile, const TapsDesign& design) {
+  if (design.rank > 0) return design;
+  return cache_of(settings.device).designs.get({profile, design}, [&] {
+    return kept_with_rank(settings.options.cache_folder, profile, design);
+  });
+}
+
+std::shared_ptr<const Taps> fitted_taps(const PlanSettings& settings, const Profile& profile,
+                                        const TapsDesign& design) {
+  const TapsDesign ranked = with_rank(settings, profile, design);
+  return cache_of(settings.device).taps.get({profile, ranked}, [&] {
+    return std::make_shared<const Taps>(kept_taps(settings.options.cache_folder, profile, ranked));
+  });
+}
+
+int most_terms(const PlanSettings& settings, const DesignOf& design_of) {
   std::vector<std::future<TapsDesign>> designs;
-  designs.reserve(materials.size());
-  for (const Material& material : materials) {
-    designs.push_back(std::async([&] { return with_rank(device, material.profile, design_of(material)); }));
+  designs.reserve(settings.materials.size());
+  for (const Material& material : settings.materials) {
+    designs.push_back(std::async([&] { return with_rank(settings, material.profile, design_of(material)); }));
   }
   int most = 1;
   for (auto& design : designs) most = std::max(most, design.get().rank);
   return most;
 }
 
-MaterialTables make_material_tables(const Device& device, const std::vector<Material>& materials,
-                                    const DesignOf& design_of, double jitter, int terms) {
+MaterialTables make_material_tables(const PlanSettings& settings, const DesignOf& design_of, int terms) {
+  const std::vector<Material>& materials = settings.materials;
   MaterialTables tables;
   tables.terms_per_material = terms;
   std::vector<std::future<std::shared_ptr<const Taps>>> fits;
   fits.reserve(materials.size());
   for (const Material& material : materials) {
     fits.push_back(
-        std::async(std::launch::async, [&] { return fitted_taps(device, material.profile, design_of(material)); }));
+        std::async(std::launch::async, [&] { return fitted_taps(settings, material.profile, design_of(material)); }));
   }
   for (std::size_t i = 0; i < materials.size(); ++i) {
     const std::shared_ptr<const Taps> its_taps = fits[i].get();
@@ -137,7 +141,7 @@ MaterialTables make_material_tables(const Device& device, const std::vector<Mate
     row.first_level = static_cast<int>(tables.levels.size());
     row.levels = static_cast<int>(taps.levels.size());
     row.first_term = static_cast<int>(tables.terms.size());
-    for (const TapLevel& level : taps.levels) append_level(level, taps, jitter, tables);
+    for (const TapLevel& level : taps.levels) append_level(level, taps, settings.options.jitter, tables);
     append_terms(taps, tables);
     tables.materials.push_back(row);
   }

@@ -2,11 +2,13 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <vector>
 
 #include "dermis/plan.hpp"
 #include "dermis/tap_tables.hpp"
 #include "opencl/params.hpp"
+#include "screen/plan_settings.hpp"
 
 namespace dermis {
 
@@ -26,11 +28,16 @@ struct MaterialTables {
 /// The taps that each material gets.
 using DesignOf = std::function<TapsDesign(const Material&)>;
 
-/// The most terms that a material has.
-int most_terms(const Device& device, const std::vector<Material>& materials, const DesignOf& design_of);
+/// The design with its rank, which is found once per device.
+TapsDesign with_rank(const PlanSettings& settings, const Profile& profile, const TapsDesign& design);
 
-/// Taps are fitted once per device, those of several materials at the same time. `jitter` is Options::jitter.
-MaterialTables make_material_tables(const Device& device, const std::vector<Material>& materials,
-                                    const DesignOf& design_of, double jitter, int terms);
+/// The level table of a design. Taps are fitted once per device.
+std::shared_ptr<const Taps> fitted_taps(const PlanSettings& settings, const Profile& profile, const TapsDesign& design);
+
+/// The most terms that a material has.
+int most_terms(const PlanSettings& settings, const DesignOf& design_of);
+
+/// The tables of all materials, whose taps are fitted at the same time. Every material has so many terms.
+MaterialTables make_material_tables(const PlanSettings& settings, const DesignOf& design_of, int terms);
 
 }  // namespace dermis

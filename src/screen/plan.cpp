@@ -61,6 +61,26 @@ void check_albedo_mix(const FrameDescription& frames, const Options& options) {
   }
 }
 
+/// Checks all that a plan is made of, and chooses its taps.
+PlanSettings settings_of(const Device& device, std::vector<Material> materials, const FrameDescription& frames,
+                         const Options& options) {
+  check_options(options);
+  check_materials(materials, frames.material, frames.albedo);
+  check_albedo_mix(frames, options);
+  check_designs(materials, options);
+  check_disc(options.disc);
+  ChosenTaps choice = choose_taps(std::move(materials), options);
+  return {device, std::move(choice.materials), frames, std::move(choice.options)};
+}
+
+/// Fits the taps, and tells the method of them.
+MaterialTables fit_taps(const PlanSettings& settings, ScatterMethod& method, int terms) {
+  MaterialTables tables = make_material_tables(
+      settings, [&](const Material& material) { return method.design_of(material); }, terms);
+  method.measure(tables);
+  return tables;
+}
+
 /// Runs a plan on one black pixel. PoCL compiles a kernel when it is first launched, for the size of its
 /// work-groups: here instead of in the first frame.
 void run_on_black(const Plan& plan, const FrameDescription& frames) {
@@ -90,14 +110,7 @@ void Event::wait() const {
 
 Plan::Plan(const Device& device, std::vector<Material> materials, const FrameDescription& frames,
            const Options& options) {
-  check_options(options);
-  check_materials(materials, frames.material, frames.albedo);
-  check_albedo_mix(frames, options);
-  check_designs(materials, options);
-  check_disc(options.disc);
-  ChosenTaps choice = choose_taps(std::move(materials), options);
-  auto state =
-      std::make_unique<State>(PlanSettings{device, std::move(choice.materials), frames, std::move(choice.options)});
+  auto state = std::make_unique<State>(settings_of(device, std::move(materials), frames, options));
   with_device_errors([&] {
     const PlanSettings& settings = state->settings;
     ScatterMethod& method = *state->method;
@@ -110,9 +123,7 @@ Plan::Plan(const Device& device, std::vector<Material> materials, const FrameDes
     };
     auto program = build(state->sources.method);
     auto classification = build(state->sources.classification);
-    const MaterialTables tables = make_material_tables(
-        device, settings.materials, [&](const Material& material) { return method.design_of(material); },
-        settings.options.jitter, terms);
+    const MaterialTables tables = fit_taps(settings, method, terms);
     state->materials = upload(context, tables.materials);
     state->levels = upload(context, tables.levels);
     method.upload(context, tables);
@@ -217,11 +228,9 @@ MaterialTaps Plan::taps_of(std::size_t material, double pixel_mm) const {
     throw Error(ErrorCode::usage, "material", std::to_string(material), "one of the plan, from 0");
   }
   const Profile& profile = state_->settings.materials[material].profile;
-  MaterialTaps result{.design = with_rank(profile, *state_->settings.materials[material].taps)};
+  MaterialTaps result{.design = with_rank(state_->settings, profile, *state_->settings.materials[material].taps)};
   result.count = result.design.count;
-  const auto taps = cache_of(state_->settings.device).taps.get({profile, result.design}, [&] {
-    return std::make_shared<const Taps>(make_taps(profile, result.design));
-  });
+  const auto taps = fitted_taps(state_->settings, profile, result.design);
   if (pixel_mm == 0) pixel_mm = taps->radius_mm / usual_radius_px;
   if (result.design.tolerance > 0) {
     const int level = Taps::level_index(static_cast<float>(taps->radius_mm / pixel_mm));
@@ -234,9 +243,13 @@ MaterialTaps Plan::taps_of(std::size_t material, double pixel_mm) const {
   return result;
 }
 
-std::size_t Plan::scratch_bytes(int width, int height) const {
-  const bool defers = state_->settings.options.bad_pixels == BadPixels::error || !state_->method->by_tiles();
-  return state_->run_sizes(width, height).bytes(defers);
+std::size_t Plan::scratch_bytes(int width, int height) const { return state_->scratch_bytes(width, height); }
+
+std::size_t Plan::scratch_bytes(const Device& device, std::vector<Material> materials, const FrameDescription& frames,
+                                const Options& options, int width, int height) {
+  const State state(settings_of(device, std::move(materials), frames, options));
+  fit_taps(state.settings, *state.method, state.method->most_terms());
+  return state.scratch_bytes(width, height);
 }
 
 }  // namespace dermis

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <utility>
@@ -32,6 +33,11 @@ struct Plan::State {
   RunSizes run_sizes(int width, int height) const {
     const FrameSize frame{width, height};
     return {frame, method->buffer_bytes(frame)};
+  }
+
+  std::size_t scratch_bytes(int width, int height) const {
+    const bool defers = settings.options.bad_pixels == BadPixels::error || !method->by_tiles();
+    return run_sizes(width, height).bytes(defers);
   }
 
  private:

@@ -23,7 +23,6 @@ int highest_rank(Model model) {
 }
 
 void check_design(const TapsDesign& design) {
-  constexpr int most_taps = 2047;
   const int ranks = highest_rank(design.model);
   if (!(design.tolerance >= 0 && design.tolerance < 1)) {
     throw Error(ErrorCode::usage, "tolerance", std::to_string(design.tolerance), "at least 0 and below 1");

@@ -5,6 +5,8 @@
 
 namespace dermis {
 
+constexpr int most_taps = 2047;  ///< of a pass
+
 /// Throws Error(usage) that names what is out of range.
 void check_design(const TapsDesign& design);
 

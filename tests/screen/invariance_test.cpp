@@ -1,10 +1,12 @@
 // What must not change a single bit of the result.
 #include <cstring>
+#include <filesystem>
 
 #include "dermis/plan.hpp"
 #include "opencl/device.hpp"
 #include "support/catch.hpp"
 #include "support/random_frame.hpp"
+#include "support/temporary_folder.hpp"
 
 using dermis::Device;
 using dermis::Format;
@@ -168,4 +170,18 @@ TEST_CASE("the result does not depend on how it is computed", "[invariance]") {
     CHECK(same_bytes(scattered, *frame.scattered));
     CHECK(same_bytes(result, *frame.result));
   }
+}
+
+TEST_CASE("kept taps do not matter", "[invariance]") {
+  const TemporaryFolder folder;
+  RandomFrame frame = full_frame(71, false, 0);
+  for (dermis::Material& material : frame.materials) material.taps.reset();
+  Options options = frame.options;
+  options.method = Method::separable;
+  options.taps = dermis::design_within(0.02);
+  const Outputs fitted = run(Device::open(), frame, options);
+  options.cache_folder = folder / "kept";
+  CHECK(run(Device::open(), frame, options) == fitted);  // another device has no taps in memory
+  CHECK(run(Device::open(), frame, options) == fitted);
+  CHECK(std::filesystem::exists(options.cache_folder));
 }

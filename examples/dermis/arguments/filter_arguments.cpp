@@ -1,6 +1,7 @@
 #include "arguments/filter_arguments.hpp"
 
 #include "arguments/bad_pixels_argument.hpp"
+#include "arguments/cache_argument.hpp"
 #include "arguments/help.hpp"
 #include "arguments/number_argument.hpp"
 #include "arguments/word_argument.hpp"
@@ -97,6 +98,7 @@ void add_filter_arguments(CLI::App& app, FilterArguments& arguments) {
   }
   const HelpGroup group(app, "Device");
   add_device_arguments(app, arguments.device);
+  add_cache_argument(app, arguments.cache_dir);
 }
 
 }  // namespace dermis::program

@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <array>
 #include <optional>
+#include <string>
 
 #include "arguments/design_arguments.hpp"
 #include "arguments/device_arguments.hpp"
@@ -29,7 +30,8 @@ struct FilterArguments {
   bool reuse = false;
   SurfaceArguments surface;
   DeviceArguments device;
-  std::optional<Method> method;  ///< none: the one that the quality asks for
+  std::optional<std::string> cache_dir;  ///< as cache_folder_of takes it
+  std::optional<Method> method;          ///< none: the one that the quality asks for
   QualityArguments quality;
   DiscArguments disc;
   DesignArguments design{.defaults = Options{}.taps, .may_be_automatic = true};

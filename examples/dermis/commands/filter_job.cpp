@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <string_view>
+#include <utility>
 
+#include "arguments/cache_argument.hpp"
 #include "arguments/profile_argument.hpp"
 #include "dermis/error.hpp"
 
@@ -90,6 +92,7 @@ Options options_of(const FilterArguments& arguments) {
   options.method = method_of(arguments);
   options.disc = disc_options_of(arguments.disc);
   options.taps = design_of(arguments);
+  options.cache_folder = cache_folder_of(arguments.cache_dir);
   const bool is_tolerance = is_automatic(arguments) && arguments.quality.tolerance;
   if (is_tolerance) options.tolerance = *arguments.quality.tolerance;
   if (is_reference(arguments) || (is_automatic(arguments) && !is_tolerance))
@@ -151,6 +154,17 @@ FilterJob job_of(const FilterArguments& arguments) {
     for (NamedProfile& named : job.surface.profiles) named.taps = options.taps;
   job.command = record_of(arguments, job);
   return job;
+}
+
+ChosenTaps taps_of(const FilterJob& job, const std::vector<MaterialPixels>& pixels) {
+  std::vector<Material> materials = materials_of(job.surface.profiles);
+  for (std::size_t i = 0; i < materials.size(); ++i) {
+    materials[i].pixel_mm = pixels[i].pixel_mm.value_or(0);
+    materials[i].finest_pixel_mm = pixels[i].finest_pixel_mm.value_or(0);
+  }
+  ChosenTaps taps = choose_taps(std::move(materials), job.options);
+  taps.options.sheared = job.sheared;
+  return taps;
 }
 
 }  // namespace dermis::program

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "arguments/filter_arguments.hpp"
+#include "commands/surface_input.hpp"
 
 namespace dermis::program {
 
@@ -23,5 +24,8 @@ struct FilterJob {
 
 /// Throws Error(usage) for what the command line needs and lacks, and for what contradicts; and as request_of.
 FilterJob job_of(const FilterArguments& arguments);
+
+/// The taps that the job asks for, for the pixels of each material.
+ChosenTaps taps_of(const FilterJob& job, const std::vector<MaterialPixels>& pixels);
 
 }  // namespace dermis::program

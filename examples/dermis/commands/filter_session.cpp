@@ -2,10 +2,8 @@
 
 namespace dermis::program {
 
-const Device& FilterSession::device() {
-  if (!device_) device_.emplace(open_device(arguments_));
-  return *device_;
-}
+FilterSession::FilterSession(const DeviceArguments& device, bool reuses)
+    : device_(std::async(std::launch::async, [device] { return open_device(device); })), reuses_(reuses) {}
 
 const Plan& FilterSession::plan(const ChosenTaps& taps, const FrameDescription& frames) {
   if (plan_ && taps_.materials == taps.materials && frames_ == frames && taps_.options == taps.options) return *plan_;

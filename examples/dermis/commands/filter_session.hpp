@@ -1,6 +1,7 @@
 /// The pictures of one call share a device, and a plan as long as none of them asks for another one.
 #pragma once
 
+#include <future>
 #include <optional>
 #include <vector>
 
@@ -12,10 +13,10 @@ namespace dermis::program {
 class FilterSession {
  public:
   /// `reuses`: pictures take the light of what has not changed from the one before.
-  FilterSession(DeviceArguments device, bool reuses) : arguments_(std::move(device)), reuses_(reuses) {}
+  FilterSession(const DeviceArguments& device, bool reuses);
 
-  /// The device, which is opened when it is first asked for.
-  const Device& device();
+  /// The device, which opens while the first picture is read. Throws as Device::open.
+  const Device& device() { return device_.get(); }
 
   /// The plan of these, which is that of the picture before if nothing has changed.
   const Plan& plan(const ChosenTaps& taps, const FrameDescription& frames);
@@ -24,8 +25,7 @@ class FilterSession {
   Stats run(const Frame& frame, const Progress& progress);
 
  private:
-  DeviceArguments arguments_;
-  std::optional<Device> device_;
+  std::shared_future<Device> device_;
   bool reuses_;
   ChosenTaps taps_;
   FrameDescription frames_;

@@ -9,9 +9,11 @@
 #include <string>
 #include <vector>
 
+#include "arguments/cache_argument.hpp"
 #include "arguments/material_arguments.hpp"
 #include "arguments/picture_arguments.hpp"
 #include "arguments/profile_argument.hpp"
+#include "arguments/quality_arguments.hpp"
 #include "commands/commands.hpp"
 #include "dermis/error.hpp"
 #include "dermis/exr.hpp"
@@ -31,6 +33,7 @@ struct InfoArguments {
   std::string path;
   PictureArguments picture;
   MaterialArguments materials;
+  std::optional<std::string> cache_dir;  ///< as cache_folder_of takes it
   bool json = false;
 };
 
@@ -126,13 +129,34 @@ std::size_t bytes_of_pixel(const FrameDescription& frame) {
   return (rgb + single) * bytes_of(Format::f32);
 }
 
-/// The memory that a run would need, if the roles are there and a device can tell.
-std::optional<Memory> find_memory(const Info& info, const std::vector<NamedProfile>& profiles) {
+/// The materials of the profiles, with the sizes of their pixels as far as camera and scale tell them.
+std::vector<Material> materials_of(const Info& info, const std::vector<NamedProfile>& profiles,
+                                   const std::optional<double>& mm_per_unit) {
+  std::vector<Material> materials = program::materials_of(profiles);
+  if (!info.camera || !mm_per_unit) return materials;
+  for (std::size_t i = 0; i < profiles.size(); ++i) {
+    const auto surface = std::find_if(info.surfaces.begin(), info.surfaces.end(),
+                                      [&](const Surface& its) { return its.id == profiles[i].id; });
+    if (surface == info.surfaces.end()) continue;
+    const auto pixel_mm = [&](const std::optional<double>& depth_units) {
+      return pixel_mm_at(depth_units, info.camera->camera, *mm_per_unit).value_or(0);
+    };
+    materials[i].pixel_mm = pixel_mm(surface->pixels.median_depth_units);
+    materials[i].finest_pixel_mm = pixel_mm(surface->pixels.nearest_depth_units);
+  }
+  return materials;
+}
+
+/// The memory that a run of the filter would need with no more options than these, if the roles are there and a device
+/// can tell.
+std::optional<Memory> find_memory(const Info& info, const std::vector<NamedProfile>& profiles,
+                                  const std::optional<double>& mm_per_unit, const std::string& cache_folder) {
   try {
     const std::vector<NamedProfile> asked =
         profiles.empty() ? std::vector<NamedProfile>{{{}, presets().front().name, presets().front().profile}}
                          : profiles;
-    require_roles(info.picture, info.roles, asked, Options{});
+    const Options options{.quality = default_quality, .cache_folder = cache_folder};
+    require_roles(info.picture, info.roles, asked, options);
     const auto frames = describe_frame(info, have_ids(asked));
     if (!frames) return std::nullopt;
     std::size_t pixel_bytes = bytes_of_pixel(*frames);
@@ -142,8 +166,8 @@ std::optional<Memory> find_memory(const Info& info, const std::vector<NamedProfi
     }
     const int width = info.picture.width();
     const int height = info.picture.height();
-    const Plan plan(Device::open(), materials_of(asked), *frames);
-    return Memory{plan.scratch_bytes(width, height),
+    const std::vector<Material> materials = materials_of(info, asked, mm_per_unit);
+    return Memory{Plan::scratch_bytes(Device::open(), materials, *frames, options, width, height),
                   pixel_bytes * static_cast<std::size_t>(width) * static_cast<std::size_t>(height)};
   } catch (const Error&) {
     return std::nullopt;
@@ -232,7 +256,7 @@ int run_info(const InfoArguments& arguments) {
   info.roles = exr::find_roles(info.picture, arguments.picture.roles, arguments.picture.layer);
   find_camera(info, arguments.picture.camera);
   find_surfaces(info, profiles, arguments.picture.mm_per_unit);
-  info.memory = find_memory(info, profiles);
+  info.memory = find_memory(info, profiles, arguments.picture.mm_per_unit, cache_folder_of(arguments.cache_dir));
   fmt::print("{}", arguments.json ? json_text_of(info, arguments.path) : text_of(info, arguments.path));
   return 0;
 }
@@ -247,6 +271,7 @@ Command add_info(CLI::App& parent) {
   add_scale_argument(*app, arguments->picture);
   add_camera_arguments(*app, arguments->picture.camera);
   add_material_arguments(*app, arguments->materials);
+  add_cache_argument(*app, arguments->cache_dir);
   app->add_flag("--json", arguments->json, "as JSON");
   return {app, [arguments] { return run_info(*arguments); }};
 }

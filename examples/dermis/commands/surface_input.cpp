@@ -12,13 +12,6 @@ namespace {
 
 using exr::Role;
 
-/// The size is missing if the pixels are nowhere, or of a size that taps cannot be made for.
-std::optional<double> pixel_mm_at(const std::optional<double>& depth_units, const Camera& camera, double mm_per_unit) {
-  if (!depth_units) return std::nullopt;
-  const double pixel_mm = finest_pixel_mm(camera, *depth_units, mm_per_unit);
-  return pixel_mm >= 1e-12 && pixel_mm <= 1e12 ? std::optional(pixel_mm) : std::nullopt;
-}
-
 /// Throws Error(role_missing) if the picture lacks a role that is needed.
 TranslucencyImages load_translucency_images(const exr::Picture& picture, const exr::Roles& roles) {
   for (const Role role : {Role::position, Role::normal, Role::albedo}) exr::require(picture, roles, role);

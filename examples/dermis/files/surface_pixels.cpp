@@ -52,9 +52,11 @@ std::array<double, 2> px_per_mm(const Camera& camera, double depth_units, double
   return {camera.scale_x / mm, camera.scale_y / mm};
 }
 
-double finest_pixel_mm(const Camera& camera, double depth_units, double mm_per_unit) {
-  const auto [x, y] = px_per_mm(camera, depth_units, mm_per_unit);
-  return 1 / std::max(x, y);
+std::optional<double> pixel_mm_at(const std::optional<double>& depth_units, const Camera& camera, double mm_per_unit) {
+  if (!depth_units) return std::nullopt;
+  const auto [x, y] = px_per_mm(camera, *depth_units, mm_per_unit);
+  const double pixel_mm = 1 / std::max(x, y);
+  return pixel_mm >= 1e-12 && pixel_mm <= 1e12 ? std::optional(pixel_mm) : std::nullopt;
 }
 
 }  // namespace dermis::program

@@ -31,7 +31,8 @@ SurfacePixels count_surface(std::span<const float> depth, std::span<const float>
 /// Pixels per mm of a surface parallel to the screen, along x and along y.
 std::array<double, 2> px_per_mm(const Camera& camera, double depth_units, double mm_per_unit);
 
-/// The size of a pixel there, mm, along the axis that has the smaller ones.
-double finest_pixel_mm(const Camera& camera, double depth_units, double mm_per_unit);
+/// The size of a pixel there, mm, along the axis that has the smaller ones; none if the pixels are nowhere, or of a
+/// size that taps cannot be made for.
+std::optional<double> pixel_mm_at(const std::optional<double>& depth_units, const Camera& camera, double mm_per_unit);
 
 }  // namespace dermis::program

@@ -9,7 +9,7 @@ TapsDesign ScatterMethod::design_of(const Material& material) const {
 }
 
 int ScatterMethod::most_terms() const {
-  return dermis::most_terms(settings_.device, settings_.materials, [&](const Material& m) { return design_of(m); });
+  return dermis::most_terms(settings_, [&](const Material& m) { return design_of(m); });
 }
 
 int ScatterMethod::vector_width() const { return settings_.item_is_pixel() ? 1 : settings_.device.info().vector_width; }

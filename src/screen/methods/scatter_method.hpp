@@ -38,7 +38,9 @@ class ScatterMethod {
   /// Kernel files, and build constants beside those of every plan. Every material has so many terms.
   virtual ProgramSource kernels(int terms) const = 0;
 
-  /// Uploads the tables that only this method reads. Called once, before all that follow.
+  /// Takes what the memory of a run depends on from the tables. Called once, before all that follow.
+  virtual void measure(const MaterialTables&) {}
+  /// Uploads the tables that only this method reads. Called once, before a run.
   virtual void upload(const cl::Context& context, const MaterialTables& tables) = 0;
 
   /// Bytes of the buffers that a run needs of its own: they become RunMemory::method, in this order.

@@ -31,9 +31,12 @@ class PackedTables {
 
 }  // namespace
 
-void SeparableMethod::upload(const cl::Context& context, const MaterialTables& tables) {
+void SeparableMethod::measure(const MaterialTables& tables) {
   terms_ = tables.terms_per_material;
   farthest_px_ = tables.farthest_px;
+}
+
+void SeparableMethod::upload(const cl::Context& context, const MaterialTables& tables) {
   PackedTables packed;
   taps_at_.terms = packed.add(tables.terms);
   taps_at_.offsets = packed.add(tables.offsets_px);

@@ -10,6 +10,7 @@ class SeparableMethod : public ScatterMethod {
  public:
   using ScatterMethod::ScatterMethod;
 
+  void measure(const MaterialTables& tables) override;
   void upload(const cl::Context& context, const MaterialTables& tables) override;
 
  protected:
