@@ -23,6 +23,7 @@ class PictureAttributes {
   virtual ~PictureAttributes() = default;
   virtual double pixel_aspect() const = 0;
   virtual void set_text(std::string_view name, std::string_view value) = 0;
+  virtual std::string text(std::string_view name) const = 0;  ///< empty if there is none
 };
 
 /// All that a file says of a picture but for its pixels.
@@ -66,8 +67,8 @@ class ImageLibrary {
   /// A file that takes the bytes of a stream, which outlives it. Throws as PictureWriter.
   virtual std::unique_ptr<PictureWriter> create(std::FILE* stream, const PictureDescription& description) const = 0;
 
-  /// Writes packed RGB, 0..1 in sRGB, as a PNG file of 8 bits. Empty if it worked, else what went wrong.
-  virtual std::string write_png(const std::filesystem::path& path, int width, int height, const float* rgb) const = 0;
+  /// Writes packed RGB, 0..1 in sRGB, to a stream as a PNG file of 8 bits. Empty if it worked, else what went wrong.
+  virtual std::string write_png(std::FILE* stream, int width, int height, const float* rgb) const = 0;
 
   /// The colours of values 0..1 in a ramp of even brightness steps, as packed RGB in sRGB; empty if that failed.
   virtual std::vector<float> heat_colours(int width, int height, std::span<const float> values) const = 0;

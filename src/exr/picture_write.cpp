@@ -73,21 +73,19 @@ void Picture::write(const std::filesystem::path& path, std::string_view compress
                     std::span<const std::string> names) const {
   const PixelBlock& pixels = state_->pixels;
   const std::string method = chosen_compression(compression, state_->description.compression);
-  const auto fail = [&path](std::string_view why) {
-    throw Error(ErrorCode::output, escaped(path.string()), escaped(why), "a file that can be written");
-  };
-  if (pixels.channels().empty()) fail("a picture without channels");
+  if (pixels.channels().empty())
+    throw Error(ErrorCode::output, escaped(path.string()), "a picture without channels", "a channel at least");
   const std::vector<Channel> channels = channels_to_write(*this, names);
+  TemporaryFile file(path);
   try {
-    TemporaryFile file(path);
     const PictureDescription description = description_to_write(state_->description, channels, method);
     write_pixels(*image_library().create(file.stream(), description), pixels, Packing(channels));
-    file.commit();
   } catch (const Error&) {
     throw;
   } catch (const std::exception& error) {
-    fail(error.what());
+    file.fail(error.what());
   }
+  file.commit();
 }
 
 }  // namespace dermis::exr

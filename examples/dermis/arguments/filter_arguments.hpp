@@ -13,6 +13,8 @@
 #include "arguments/surface_arguments.hpp"
 #include "dermis/plan.hpp"
 #include "dermis/words.hpp"
+#include "files/beauty_composition.hpp"
+#include "report/messages.hpp"
 
 namespace dermis::program {
 
@@ -26,7 +28,11 @@ enum class OutputLayers {
 struct FilterArguments {
   OutputArguments output;
   OutputLayers layers = OutputLayers::all;
+  Compose compose = Compose::automatic;
+  bool keeps_formats = false;  ///< of half channels that cannot hold a value
+  bool may_be_empty = false;   ///< a picture in which nothing scatters
   bool reuse = false;
+  MessageArguments messages;
   SurfaceArguments surface;
   DeviceArguments device;
   std::optional<Method> method;  ///< none: the one that the quality asks for

@@ -121,6 +121,7 @@ std::string record_of(const FilterArguments& arguments, const FilterJob& job) {
   add("--lighting", name_of(options.lighting));
   add("--albedo-mix", options.albedo_mix);
   text += command_text(arguments.surface.translucency);
+  if (arguments.compose != Compose::automatic) add("--compose", name_of(arguments.compose));
   add("--bad-pixels", name_of(options.bad_pixels));
   text += command_text(job.surface.picture.camera);
   for (const std::string& matte : job.surface.cryptomatte) add("--cryptomatte", matte);
@@ -145,6 +146,10 @@ FilterJob job_of(const FilterArguments& arguments) {
                 .stats = arguments.output.stats,
                 .compression = arguments.output.compression,
                 .layers = arguments.layers,
+                .compose = arguments.compose,
+                .keeps_formats = arguments.keeps_formats,
+                .may_be_empty = arguments.may_be_empty,
+                .messages = arguments.messages,
                 .device = arguments.device,
                 .command = {}};
   if (options.taps.tolerance > 0 && arguments.design.rank)  // a quality would take neither

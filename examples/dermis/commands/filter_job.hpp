@@ -17,6 +17,10 @@ struct FilterJob {
   bool stats;
   std::string compression;
   OutputLayers layers;
+  Compose compose;
+  bool keeps_formats;
+  bool may_be_empty;
+  MessageArguments messages;
   DeviceArguments device;
   std::string command;  ///< a command without the names of pictures and folders, for the record in the result
 };

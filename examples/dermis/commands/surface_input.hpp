@@ -11,6 +11,7 @@
 #include "dermis/plan.hpp"
 #include "dermis/translucency.hpp"
 #include "files/loaded_frame.hpp"
+#include "report/messages.hpp"
 
 namespace dermis::program {
 
@@ -27,6 +28,7 @@ struct SurfaceInput {
   exr::FoundCamera camera;
   LoadedFrame loaded;
   std::optional<TranslucencyImages> translucency;
+  bool scatters = true;  ///< any pixel; if none does there may be no camera
 
   /// A view of the images, with the camera and nothing to write.
   Frame frame(double mm_per_unit) const;
@@ -43,8 +45,11 @@ struct MaterialPixels {
   std::optional<double> finest_pixel_mm;  ///< at the nearest depth
 };
 
-/// Counts the pixels of each profile. Warns on stderr of a material that no pixel has.
-std::vector<MaterialPixels> count_pixels(const SurfaceInput& input, const SurfaceRequest& request);
+/// Counts the pixels of each profile. Warns of a material that no pixel has.
+std::vector<MaterialPixels> count_pixels(const SurfaceInput& input, const SurfaceRequest& request, Messages& messages);
+
+/// Throws Error(role_missing) that names the materials if nothing in the picture scatters.
+void require_scattering(const SurfaceInput& input, const SurfaceRequest& request);
 
 /// Adds the light that comes through, if it was asked for, to that of the input, which `frame` views.
 void transmit_light(const Device& device, const SurfaceRequest& request, Lighting lighting, const Frame& frame,

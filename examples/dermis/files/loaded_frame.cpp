@@ -2,12 +2,16 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <limits>
 #include <string>
 #include <utility>
 
 #include "arguments/cryptomatte_argument.hpp"
 #include "dermis/error.hpp"
+#include "files/surface_pixels.hpp"
 
 namespace dermis::program {
 namespace {
@@ -39,6 +43,33 @@ Frame LoadedFrame::frame() const {
           .matte = image_of(matte)};
 }
 
+std::vector<std::uint8_t> scattering_pixels(const LoadedFrame& loaded, const std::vector<NamedProfile>& profiles) {
+  std::vector<std::uint8_t> scatters(loaded.light.size() / 3, 1);
+  const auto keep_where = [&](const std::vector<float>& values, const auto& condition) {
+    for (std::size_t i = 0; i < values.size(); ++i)
+      if (!condition(values[i])) scatters[i] = 0;
+  };
+  keep_where(loaded.depth, [](float depth) { return !is_background(depth); });
+  keep_where(loaded.mask, [](float width) { return width > 0; });
+  keep_where(loaded.matte, [](float share) { return share > 0; });
+  keep_where(loaded.material, [&](float id) {
+    return std::any_of(profiles.begin(), profiles.end(),
+                       [&](const NamedProfile& named) { return static_cast<float>(named.id.value_or(-1)) == id; });
+  });
+  return scatters;
+}
+
+std::vector<float> scattering_light(const LoadedFrame& loaded, const Options& options) {
+  constexpr float smallest_albedo = 1e-4F;  // as Lighting::lit says
+  std::vector<float> light = loaded.light;
+  for (std::size_t i = 0; i < loaded.albedo.size(); ++i) {
+    const float albedo = loaded.albedo[i];
+    if (options.lighting == Lighting::lit) light[i] = albedo >= smallest_albedo ? light[i] / albedo : 0;
+    if (options.albedo_mix > 0) light[i] *= std::pow(std::max(albedo, 0.0F), static_cast<float>(options.albedo_mix));
+  }
+  return light;
+}
+
 void require_roles(const exr::Picture& picture, const exr::Roles& roles, const std::vector<NamedProfile>& profiles,
                    const Options& options, bool has_cryptomatte) {
   exr::require(picture, roles, Role::light);
@@ -68,6 +99,18 @@ LoadedFrame load_images(const exr::Picture& picture, const exr::Roles& roles, co
 std::vector<float> load_depth_image(const exr::Picture& picture, const exr::Roles& roles,
                                     const exr::FoundCamera& camera) {
   return checked(exr::load_depth(picture, roles, camera), picture, Role::depth, 1);
+}
+
+std::vector<float> load_depth_image(const exr::Picture& picture, const exr::Roles& roles) {
+  if (roles.has(Role::depth)) return load_values(picture, roles, Role::depth, 1);
+  const std::vector<float> position = load_values(picture, roles, Role::position, 3);
+  std::vector<float> depth;
+  for (std::size_t i = 0; i < position.size(); i += 3) {
+    const auto* const p = &position[i];
+    const bool is_there = std::isfinite(p[0] + p[1] + p[2]) && (p[0] != 0 || p[1] != 0 || p[2] != 0);
+    depth.push_back(is_there ? 1 : std::numeric_limits<float>::infinity());
+  }
+  return depth;
 }
 
 }  // namespace dermis::program

@@ -1,6 +1,7 @@
 /// The images of a picture that the filter reads, in memory as float.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "arguments/material_arguments.hpp"
@@ -27,6 +28,12 @@ struct LoadedFrame {
   Frame frame() const;
 };
 
+/// 1 for the pixels that scatter, 0 for the others: those of background, of no material, or with nothing of it.
+std::vector<std::uint8_t> scattering_pixels(const LoadedFrame& loaded, const std::vector<NamedProfile>& profiles);
+
+/// The light as the filter writes it where nothing scatters: without the albedo, but for what --albedo-mix puts in.
+std::vector<float> scattering_light(const LoadedFrame& loaded, const Options& options);
+
 /// Throws Error(role_missing) if the picture lacks a role that these profiles and options need. `has_cryptomatte`: ids
 /// come from there.
 void require_roles(const exr::Picture& picture, const exr::Roles& roles, const std::vector<NamedProfile>& profiles,
@@ -40,5 +47,9 @@ LoadedFrame load_images(const exr::Picture& picture, const exr::Roles& roles, co
 /// The depth of the picture, or that of its positions if it has no other. Throws as load_images.
 std::vector<float> load_depth_image(const exr::Picture& picture, const exr::Roles& roles,
                                     const exr::FoundCamera& camera);
+
+/// What is known of the depth without a camera: that of the picture, or infinite where there is no position, and 1
+/// elsewhere.
+std::vector<float> load_depth_image(const exr::Picture& picture, const exr::Roles& roles);
 
 }  // namespace dermis::program

@@ -167,7 +167,9 @@ std::string json_text_of(const StatsReport& report) {
                  {"times_ms", times_of(report)},
                  {"camera", json_of(report.camera)},
                  {"roles", json_of(report.roles)},
-                 {"materials", json::array()}};
+                 {"materials", json::array()},
+                 {"notes", report.notes},
+                 {"warnings", report.warnings}};
   object["tiles"] = {{"total", stats.tiles.kinds.size()}};
   for (const auto& [kind, name] : word_table<TileKind>) object["tiles"][std::string(name)] = stats.count(kind);
   object["pixels"] = {{"total", stats.pixels},

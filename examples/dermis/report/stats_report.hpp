@@ -39,6 +39,8 @@ struct StatsReport {
   exr::FoundCamera camera;
   exr::Roles roles;
   std::vector<MaterialReport> materials;
+  std::vector<std::string> notes;     ///< as printed
+  std::vector<std::string> warnings;  ///< as printed
 };
 
 std::string text_of(const StatsReport& report);
