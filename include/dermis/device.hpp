@@ -32,10 +32,10 @@ class Device {
   /// All devices of all platforms, in the order that `open` numbers them; empty if there is none.
   static std::vector<DeviceInfo> list();
 
-  /// Opens a device: `name` is a number from `list` or a part of a name or platform in any case; if empty,
-  /// the environment variable DERMIS_DEVICE says the same; if that is empty too, the first device.
-  /// `threads` > 0 uses only that many compute units of a CPU device.
-  /// Throws Error(device) if there is no such device, Error(usage) if `threads` is out of range.
+  /// Opens a device: `name` is a number from `list`, a type ("CPU") or a part of a name or platform, in any case; if
+  /// empty, the environment variable DERMIS_DEVICE says the same; if that is empty too, the first device. `threads` > 0
+  /// uses only that many compute units of a CPU device. Throws Error(device) if there is no such device, Error(usage)
+  /// if `threads` is out of range.
   static Device open(std::string_view name = {}, int threads = 0);
 
   /// Uses the caller's context and device. Retains both.

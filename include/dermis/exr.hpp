@@ -90,13 +90,25 @@ class Picture {
   /// lists with blanks or commas between them. Empty if there is no such attribute or it is anything else.
   std::vector<double> number_attribute(std::string_view name) const;
 
+  /// Gives channels other values, packed as `load` returns them; values that do not change keep their bits. If a half
+  /// channel cannot hold one that is finite (65520 or more), the channels become float32; with `keeps_formats` it holds
+  /// 65504 instead. Returns how many values were too large. Throws Error(role_missing) if there is no channel of a
+  /// name, Error(input_unsupported) if one holds whole numbers. Invalidates views if channels become float32.
+  std::int64_t store(std::span<const std::string> names, std::span<const float> values, bool keeps_formats = false);
+
+  /// Makes channels float32, with the values that they have. Invalidates views if any was not.
+  void make_float(std::span<const std::string> names);
+
   /// Sets a text attribute.
   void set_attribute(std::string_view name, std::string_view value);
 
-  /// Writes to a temporary file beside `path`, then renames it. `compression` is an OpenEXR name ("zip", "piz", "dwaa",
+  /// Writes to a temporary file beside `path`, then renames it: symbolic links are followed, and a file that is
+  /// replaced leaves its mode, and as far as the process may its owner. `compression` is an OpenEXR name ("zip", "piz",
+  /// "dwaa",
   /// ...); if empty that of the file that was read, or "zip" if that loses data. Throws Error(usage) for another name,
-  /// Error(output) if the file cannot be written, leaving what was at `path`. With `names` the file has these channels
-  /// alone, in the picture's order, and all attributes; throws Error(role_missing) if there is none of a name.
+  /// Error(output) that says why if the file cannot be written or is write-protected, leaving what was at `path`. With
+  /// `names` the file has these channels alone, in the picture's order, and all attributes; throws Error(role_missing)
+  /// if there is none of a name.
   void write(const std::filesystem::path& path, std::string_view compression = {},
              std::span<const std::string> names = {}) const;
 

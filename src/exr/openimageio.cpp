@@ -230,13 +230,14 @@ class OpenImageIO final : public ImageLibrary {
     return std::make_unique<CreatedPicture>(stream, path, parts);
   }
 
-  std::string write_png(const std::filesystem::path& path, int width, int height, const float* rgb) const override {
+  std::string write_png(std::FILE* stream, int width, int height, const float* rgb) const override {
+    OIIO::Filesystem::IOFile proxy(stream, OIIO::Filesystem::IOProxy::Write);
     const auto output = OIIO::ImageOutput::create("png");
     if (!output) return OIIO::geterror();
     OIIO::ImageSpec spec(width, height, 3, OIIO::TypeDesc::UINT8);
     spec.attribute("oiio:ColorSpace", "sRGB");
-    const bool ok =
-        output->open(path.string(), spec) && output->write_image(OIIO::TypeDesc::FLOAT, rgb) && output->close();
+    const bool ok = output->set_ioproxy(&proxy) && output->open("picture.png", spec) &&
+                    output->write_image(OIIO::TypeDesc::FLOAT, rgb) && output->close();
     return ok ? "" : output->geterror();
   }
 

@@ -74,31 +74,29 @@ void write_pixels(PictureWriter& writer, const PixelBlock& pixels, const Packing
 
 void Picture::write(const std::filesystem::path& path, std::string_view compression,
                     std::span<const std::string> names) const {
-  const auto fail = [&path](std::string_view why) {
-    throw Error(ErrorCode::output, escaped(path.string()), escaped(why), "a file that can be written");
-  };
   for (const std::string& name : names) {
     if (find(name) == nullptr)
       throw Error(ErrorCode::role_missing, "channel", escaped(name), "one of " + channel_list(*this));
   }
   const std::vector<PartToWrite> parts = parts_to_write(state_->parts, state_->pixels, names, compression);
-  if (parts.empty()) fail("a picture without channels");
+  if (parts.empty())
+    throw Error(ErrorCode::output, escaped(path.string()), "a picture without channels", "a channel at least");
   std::vector<PartDescription> descriptions;
   for (const PartToWrite& part : parts) descriptions.push_back(part.description);
+  TemporaryFile file(path);
   try {
-    TemporaryFile file(path);
     const auto writer = image_library().create(file.stream(), file.path(), descriptions);
     for (std::size_t p = 0; p < parts.size(); ++p) {
       writer->begin_part(p);
       write_pixels(*writer, state_->pixels, parts[p].packing, state_->area_of(descriptions[p].data));
     }
     writer->close();
-    file.commit();
   } catch (const Error&) {
     throw;
   } catch (const std::exception& error) {
-    fail(error.what());
+    file.fail(error.what());
   }
+  file.commit();
 }
 
 }  // namespace dermis::exr

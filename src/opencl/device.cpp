@@ -71,7 +71,7 @@ bool matches(const cl::Device& device, std::size_t number, const std::string& na
   const bool is_number = std::all_of(name.begin(), name.end(), [](unsigned char c) { return std::isdigit(c) != 0; });
   if (is_number) return false;
   const DeviceInfo info = describe(device);
-  return lower(info.name).find(lower(name)) != std::string::npos ||
+  return lower(info.type) == lower(name) || lower(info.name).find(lower(name)) != std::string::npos ||
          lower(info.platform).find(lower(name)) != std::string::npos;
 }
 

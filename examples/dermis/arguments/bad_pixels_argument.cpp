@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <cstdio>
 #include <string_view>
 
 #include "arguments/word_argument.hpp"
@@ -31,10 +30,11 @@ Error bad_pixels_named_as_option(const Error& error) {
           fmt::format("{}--bad-pixels {}", line.substr(wanted_at, at - wanted_at), line.substr(at + option.size()))};
 }
 
-void warn_of_bad_pixels(const Stats& stats, BadPixels what) {
+void warn_of_bad_pixels(const Stats& stats, BadPixels what, Messages& messages) {
   if (stats.pixels_bad > 0)
-    fmt::print(stderr, "dermis: warning: {} pixels have light or albedo that is not finite; they {}\n",
-               stats.pixels_bad, what == BadPixels::zero ? "are black now" : "stay as they are");
+    messages.warn(ErrorCode::input_unsupported, "light and albedo",
+                  fmt::format("{} pixels are not finite; they {}", stats.pixels_bad,
+                              what == BadPixels::zero ? "are black now" : "stay as they are"));
 }
 
 }  // namespace dermis::program

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -9,13 +10,28 @@
 
 namespace dermis::program {
 
+/// A name in a Cryptomatte, and the material id of what it covers.
+struct MatteId {
+  std::string name;
+  int id;
+};
+
 void add_cryptomatte_argument(CLI::App& app, std::vector<std::string>& arguments);
 
-/// The arguments NAME=ID give each pixel two values: its id, 0 or another that is not named where there is none, and
-/// the share that it covers. Throws Error(usage) for what is malformed, and as exr::load_cryptomatte.
+/// The folder of a picture, in which the manifest of a Cryptomatte may lie.
+inline std::filesystem::path folder_of(const std::string& path) { return std::filesystem::path(path).parent_path(); }
+
+/// The arguments NAME=ID. Throws Error(usage) for what is malformed.
+std::vector<MatteId> parse_mattes(const std::vector<std::string>& arguments);
+
+/// Two values of each pixel: its id, 0 or another that is not named where there is none, and the share that it covers.
 struct NamedMattes {
+  std::string cryptomatte;
   std::vector<float> ids, shares;
 };
-NamedMattes load_named_mattes(const exr::Picture& picture, const std::vector<std::string>& arguments);
+
+/// Throws as exr::load_cryptomatte. A manifest may lie in `folder`.
+NamedMattes load_named_mattes(const exr::Picture& picture, const exr::Roles& roles, const std::vector<MatteId>& mattes,
+                              const std::filesystem::path& folder);
 
 }  // namespace dermis::program

@@ -4,12 +4,29 @@
 #include <limits>
 
 #include "arguments/number_argument.hpp"
+#include "dermis/error.hpp"
+#include "files/pocl_cache.hpp"
 
 namespace dermis::program {
 
+std::vector<DeviceInfo> devices_there_are() {
+  std::vector<DeviceInfo> devices = Device::list();
+  if (!devices.empty()) return devices;
+  const auto problem = cache_problem();
+  throw Error(ErrorCode::device, "devices", problem ? "none: " + *problem : "none",
+              problem ? "an OpenCL device, as PoCL is with POCL_CACHE_DIR=FOLDER that can be written"
+                      : "an OpenCL device (is a driver installed, for instance PoCL?)");
+}
+
+Device open_device(const DeviceArguments& arguments) {
+  devices_there_are();
+  return Device::open(arguments.name, arguments.threads);
+}
+
 void add_device_argument(CLI::App& app, std::string& name) {
   app.add_option("--device", name,
-                 "number or part of the name of a device, see `dermis devices`; else DERMIS_DEVICE, else the first")
+                 "number, kind (CPU, GPU) or part of the name of a device, see `dermis devices`; else DERMIS_DEVICE, "
+                 "else the first")
       ->type_name("NAME");
 }
 

@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <string>
+#include <vector>
 
 #include "dermis/device.hpp"
 
@@ -16,6 +17,10 @@ struct DeviceArguments {
 void add_device_argument(CLI::App& app, std::string& name);
 void add_device_arguments(CLI::App& app, DeviceArguments& arguments);
 
-inline Device open_device(const DeviceArguments& arguments) { return Device::open(arguments.name, arguments.threads); }
+/// All devices. Throws Error(device) that says what is in the way if there is none.
+std::vector<DeviceInfo> devices_there_are();
+
+/// Throws as devices_there_are and Device::open.
+Device open_device(const DeviceArguments& arguments);
 
 }  // namespace dermis::program

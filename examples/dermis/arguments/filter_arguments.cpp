@@ -3,6 +3,7 @@
 #include "arguments/bad_pixels_argument.hpp"
 #include "arguments/cache_argument.hpp"
 #include "arguments/help.hpp"
+#include "arguments/message_arguments.hpp"
 #include "arguments/number_argument.hpp"
 #include "arguments/word_argument.hpp"
 
@@ -25,7 +26,6 @@ void add_usual_arguments(CLI::App& app, FilterArguments& arguments) {
 void add_light_arguments(CLI::App& app, FilterArguments& arguments) {
   const HelpGroup group(app, "Light and albedo");
   Options& options = arguments.options;
-  add_word(app, "--lighting", options.lighting, "raw: the light is without albedo; lit: the albedo is in it");
   app.add_option("--albedo-mix", options.albedo_mix,
                  "m: albedo^m goes in before the passes, albedo^(1-m) after; 0 = all after, 0.5 = half and half")
       ->check(number_0_to_1())
@@ -43,7 +43,16 @@ void add_result_arguments(CLI::App& app, FilterArguments& arguments) {
                  "also draw what became of each tile, over the dimmed light, and print what the colours mean")
       ->check(folder_or_file_ending({".png"}))
       ->type_name("FILE.png");
+  add_word(
+      app, "--compose", arguments.compose,
+      "difference: the beauty gains what its diffuse light has gained; sum: it is the scattered light and the other "
+      "passes added up, where it scatters; auto: the sum if noise is in the passes that is not in the beauty");
+  app.add_flag("--keep-formats", arguments.keeps_formats,
+               "half channels stay half, with 65504 for what is above; else the beauty becomes float");
+  app.add_flag("--allow-empty", arguments.may_be_empty,
+               "copy a picture in which nothing scatters; else that is an error");
   add_stats_arguments(app, arguments.output);
+  add_message_arguments(app, arguments.messages);
 }
 
 void add_method_arguments(CLI::App& app, FilterArguments& arguments) {

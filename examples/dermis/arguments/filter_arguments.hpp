@@ -14,6 +14,8 @@
 #include "arguments/surface_arguments.hpp"
 #include "dermis/plan.hpp"
 #include "dermis/words.hpp"
+#include "files/beauty_composition.hpp"
+#include "report/messages.hpp"
 
 namespace dermis::program {
 
@@ -27,7 +29,11 @@ enum class OutputLayers {
 struct FilterArguments {
   OutputArguments output;
   OutputLayers layers = OutputLayers::all;
+  Compose compose = Compose::automatic;
+  bool keeps_formats = false;  ///< of half channels that cannot hold a value
+  bool may_be_empty = false;   ///< a picture in which nothing scatters
   bool reuse = false;
+  MessageArguments messages;
   SurfaceArguments surface;
   DeviceArguments device;
   std::optional<std::string> cache_dir;  ///< as cache_folder_of takes it

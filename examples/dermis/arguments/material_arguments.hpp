@@ -6,18 +6,21 @@
 #include <string>
 #include <vector>
 
+#include "arguments/cryptomatte_argument.hpp"
 #include "dermis/plan.hpp"
 
 namespace dermis::program {
 
 struct MaterialArguments {
-  std::vector<std::string> materials;  ///< ID=PROFILE
+  std::vector<std::string> materials;  ///< ID=PROFILE or NAME=PROFILE
   std::string profile;
 };
 
-/// A profile as the user wrote it, and the material it is for; without an id it is for every pixel.
+/// A profile as the user wrote it, and the material it is for; without an id it is for every pixel. A material that was
+/// named has an id that no other has.
 struct NamedProfile {
   std::optional<int> id;
+  std::optional<std::string> name;  ///< in a Cryptomatte
   std::string text;
   Profile profile;
   std::optional<TapsDesign> taps = {};  ///< in place of those for all
@@ -30,6 +33,12 @@ std::vector<NamedProfile> parse_profiles(const MaterialArguments& arguments);
 
 /// The profiles as a Plan takes them.
 std::vector<Material> materials_of(const std::vector<NamedProfile>& profiles);
+
+/// The materials that have names.
+std::vector<MatteId> mattes_of(const std::vector<NamedProfile>& profiles);
+
+/// "--material 1", "--material "Hero Skin"" or "--profile", for messages.
+std::string option_text(const NamedProfile& profile);
 
 /// True if they tell materials apart by their ids.
 bool have_ids(const std::vector<NamedProfile>& profiles);

@@ -2,17 +2,27 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
+
 #include "arguments/number_argument.hpp"
 
 namespace dermis::program {
 
 void add_role_arguments(CLI::App& app, PictureArguments& arguments) {
   app.add_option("--role", arguments.roles,
-                 fmt::format("take a role ({}) from these channels (1 or 3 names with commas, or one prefix; + adds); "
+                 fmt::format("take a role ({}) from these channels (1 or 3 names with commas, or one prefix; + adds; "
+                             "nothing unsets it; FILE.exr:NAME is of another file, #### in it is the input's number); "
                              "repeatable",
                              exr::role_names()))
       ->allow_extra_args(false)
       ->type_name("ROLE=CHANNELS");
+  app.add_option("--preset", arguments.preset,
+                 fmt::format("whose names the channels have: auto (the renderer that it looks like), {}, or a JSON "
+                             "file with names of your own",
+                             exr::renderer_names()))
+      ->type_name("NAME|FILE.json")
+      ->default_str("auto");
+  app.add_option("--eye", arguments.eye, "one view of a stereo picture, as left; else each of them")->type_name("NAME");
   app.add_option("--layer", arguments.layer, "the view layer, if there are several; else the first")->type_name("NAME");
 }
 
@@ -45,7 +55,9 @@ std::string command_text(const exr::CameraHint& camera) {
 std::string text_of_roles(const PictureArguments& arguments) {
   std::string text;
   for (const std::string& role : arguments.roles) text += " --role " + role;
-  return arguments.layer.empty() ? text : text + " --layer " + arguments.layer;
+  if (!arguments.preset.empty()) text += " --preset " + std::filesystem::path(arguments.preset).filename().string();
+  if (!arguments.layer.empty()) text += " --layer " + arguments.layer;
+  return arguments.eye.empty() ? text : text + " --eye " + arguments.eye;
 }
 
 }  // namespace dermis::program

@@ -13,11 +13,13 @@ namespace dermis::program {
 struct PictureArguments {
   std::vector<std::string> roles;  ///< overrides
   std::string layer;
+  std::string eye;     ///< a view of a stereo picture; empty: each of them
+  std::string preset;  ///< a renderer, or a file that maps names; empty: the renderer that it looks like
   exr::CameraHint camera;
   std::optional<double> mm_per_unit;
 };
 
-/// Adds --role and --layer.
+/// Adds --role, --preset, --layer and --eye.
 void add_role_arguments(CLI::App& app, PictureArguments& arguments);
 
 /// Adds --mm-per-unit.
@@ -29,7 +31,7 @@ void add_camera_arguments(CLI::App& app, exr::CameraHint& camera);
 /// The options about the camera that were given, with a space before each.
 std::string command_text(const exr::CameraHint& camera);
 
-/// The options --role and --layer that were given, with a space before each.
+/// The options --role, --preset, --layer and --eye that were given, with a space before each.
 std::string text_of_roles(const PictureArguments& arguments);
 
 }  // namespace dermis::program

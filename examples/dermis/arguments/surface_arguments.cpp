@@ -2,6 +2,7 @@
 
 #include "arguments/cryptomatte_argument.hpp"
 #include "arguments/help.hpp"
+#include "arguments/word_argument.hpp"
 #include "dermis/error.hpp"
 
 namespace dermis::program {
@@ -11,6 +12,14 @@ void add_reading_groups(CLI::App& app, SurfaceArguments& arguments) {
     const HelpGroup group(app, "Channels");
     add_role_arguments(app, arguments.picture);
     add_cryptomatte_argument(app, arguments.cryptomatte);
+    app.add_option_function<std::string>(
+           "--lighting", [&arguments](const std::string& word) { arguments.lighting = value_named<Lighting>(word); },
+           "raw: the light is without albedo; lit: the albedo is in it; auto: as the renderer writes it, raw if that "
+           "is "
+           "not known")
+        ->check(one_of({"auto", "raw", "lit"}))
+        ->type_name("auto|raw|lit")
+        ->default_str("auto");
   }
   const HelpGroup group(app, "Camera, if position and depth do not tell it");
   add_camera_arguments(app, arguments.picture.camera);
@@ -34,11 +43,18 @@ SurfaceRequest request_of(const SurfaceArguments& arguments) {
   SurfaceRequest request{.picture = arguments.picture,
                          .mm_per_unit = *arguments.picture.mm_per_unit,
                          .profiles = {},
-                         .cryptomatte = arguments.cryptomatte,
+                         .mattes = parse_mattes(arguments.cryptomatte),
+                         .lighting = arguments.lighting,
                          .lights = {},
                          .translucency = arguments.translucency.options};
   if (arguments.translucency.wanted) request.lights.emplace("--lights", arguments.translucency.lights);
   request.profiles = parse_profiles(arguments.materials);
+  const std::vector<MatteId> named = mattes_of(request.profiles);
+  if (!named.empty() && !arguments.cryptomatte.empty())
+    throw Error(ErrorCode::usage, "--cryptomatte",
+                arguments.cryptomatte.front() + " with " + option_text(request.profiles.front()),
+                "--material with the name alone");
+  request.mattes.insert(request.mattes.end(), named.begin(), named.end());
   return request;
 }
 

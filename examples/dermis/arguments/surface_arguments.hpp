@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "arguments/cryptomatte_argument.hpp"
 #include "arguments/material_arguments.hpp"
 #include "arguments/picture_arguments.hpp"
 #include "arguments/translucency_arguments.hpp"
@@ -18,6 +19,7 @@ struct SurfaceArguments {
   PictureArguments picture;
   MaterialArguments materials;
   std::vector<std::string> cryptomatte;  ///< NAME=ID
+  std::optional<Lighting> lighting;      ///< none: as the renderer writes it
   TranslucencyArguments translucency;
 };
 
@@ -26,7 +28,8 @@ struct SurfaceRequest {
   PictureArguments picture;
   double mm_per_unit;
   std::vector<NamedProfile> profiles;
-  std::vector<std::string> cryptomatte;
+  std::vector<MatteId> mattes;       ///< if materials are told by a Cryptomatte
+  std::optional<Lighting> lighting;  ///< none: as the renderer writes it
   std::optional<LightsFile> lights;  ///< if light is to come through
   TranslucencyOptions translucency;
 };

@@ -99,8 +99,8 @@ class HeatMap {
     for (const float value : values_)
       if (std::isfinite(value)) largest = std::max(largest, value);
     for (float& value : values_) value = !std::isfinite(value) ? 1.0F : largest > 0 ? value / largest : 0.0F;
-    TemporaryFile temporary("--heatmap", path);
-    write_heatmap_png(temporary.path(), width_, height_, values_);
+    TemporaryFile temporary(path, "--heatmap");
+    write_heatmap_png(temporary, width_, height_, values_);
     temporary.commit();
     fmt::print("heat map: brightest = {:.4g}\n", largest);
   }

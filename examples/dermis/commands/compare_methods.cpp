@@ -12,6 +12,7 @@
 #include "arguments/bad_pixels_argument.hpp"
 #include "arguments/device_arguments.hpp"
 #include "arguments/help.hpp"
+#include "arguments/message_arguments.hpp"
 #include "arguments/number_argument.hpp"
 #include "arguments/word_argument.hpp"
 #include "commands/commands.hpp"
@@ -19,6 +20,7 @@
 #include "dermis/error.hpp"
 #include "dermis/oracle/rule_2012.hpp"
 #include "files/output_file.hpp"
+#include "files/picture_roles.hpp"
 #include "report/gnuplot.hpp"
 #include "report/methods_sheet.hpp"
 
@@ -31,6 +33,7 @@ struct CompareMethodsArguments {
   std::string truth;
   SurfaceArguments surface;
   DeviceArguments device;
+  MessageArguments messages;
   Options options;  ///< those that hold for all methods
 };
 
@@ -75,8 +78,10 @@ MethodPicture by_rule_2012(const std::vector<Material>& materials, const Frame& 
 /// samples, and by the exact method. `frame` is of raw light and with albedo. Says on stderr what it works on.
 std::vector<MethodPicture> picture_methods(const Device& device, const std::vector<Material>& materials,
                                            const Frame& frame, const LoadedFrame& loaded, std::vector<float> beauty,
-                                           const Options& options) {
-  const auto say = [](const std::string& name) { fmt::print(stderr, "dermis: comparing: {}\n", name); };
+                                           const Options& options, const Messages& messages) {
+  const auto say = [&](const std::string& name) {
+    if (!messages.quiet()) fmt::print(stderr, "dermis: comparing: {}\n", name);
+  };
   const auto with = [&](Method method, int rank) {
     Options its = options;
     its.method = method;
@@ -117,8 +122,13 @@ int run_compare_methods(const CompareMethodsArguments& arguments) {
   const SurfaceRequest request = request_of(arguments.surface);
   check_writable("--output", arguments.output);
   need_gnuplot("--output");
-  SurfaceInput input = read_surface(arguments.input, request, arguments.options, true);
-  count_pixels(input, request);
+  exr::Picture picture = read_picture(arguments.input);
+  SurfaceInput input =
+      load_surface(picture, arguments.input, views_of(picture, request.picture).front(), request, true);
+  require_scattering(input, request);
+  Messages messages(arguments.messages);
+  messages.begin(arguments.input);
+  count_pixels(input, request, messages);
   std::vector<float> beauty = exr::load(input.picture, input.roles, exr::Role::beauty);
   Frame frame = input.frame(request.mm_per_unit);
   frame.beauty = image_of(beauty);
@@ -127,9 +137,11 @@ int run_compare_methods(const CompareMethodsArguments& arguments) {
   if (!arguments.truth.empty()) truth = read_truth(arguments.truth, frame);
 
   const Device device = open_device(arguments.device);
-  transmit_light(device, request, arguments.options.lighting, frame, input);
+  transmit_light(device, request, frame, input);
+  Options options = arguments.options;
+  options.lighting = input.lighting;
   std::vector<MethodPicture> pictures =
-      picture_methods(device, materials_of(request.profiles), frame, input.loaded, beauty, arguments.options);
+      picture_methods(device, materials_of(request.profiles), frame, input.loaded, beauty, options, messages);
   if (truth) pictures.push_back(std::move(*truth));
   draw_methods("--output", arguments.output, frame.width, frame.height, pictures);
   return 0;
@@ -157,6 +169,7 @@ void add_compare_methods_arguments(CLI::App& app, CompareMethodsArguments& argum
   add_bad_pixels_argument(app, arguments.options.bad_pixels);
   add_seed_argument(app, arguments.options.seed);
   add_device_arguments(app, arguments.device);
+  add_message_arguments(app, arguments.messages);
 }
 
 }  // namespace

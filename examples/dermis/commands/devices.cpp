@@ -3,17 +3,15 @@
 
 #include <vector>
 
+#include "arguments/device_arguments.hpp"
 #include "commands/commands.hpp"
 #include "dermis/device.hpp"
-#include "dermis/error.hpp"
 
 namespace dermis::program {
 namespace {
 
 int run_devices() {
-  const std::vector<DeviceInfo> devices = Device::list();
-  if (devices.empty())
-    throw Error(ErrorCode::device, "devices", "none", "an OpenCL device (is a driver installed, for instance PoCL?)");
+  const std::vector<DeviceInfo> devices = devices_there_are();
   for (std::size_t i = 0; i < devices.size(); ++i) {
     const DeviceInfo& device = devices[i];
     fmt::print("{}  {}, {}: {}, {} compute units, {} floats wide, {:.1f} GiB, driver {}\n", i, device.name,

@@ -1,10 +1,14 @@
 // dermis filter: a picture in, the same picture with scattered light out.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <cstdio>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "arguments/bad_pixels_argument.hpp"
@@ -15,9 +19,14 @@
 #include "commands/surface_input.hpp"
 #include "dermis/error.hpp"
 #include "dermis/version.hpp"
+#include "files/beauty_composition.hpp"
+#include "files/lossy_channels.hpp"
+#include "files/other_passes.hpp"
 #include "files/output_file.hpp"
 #include "files/pass_channels.hpp"
 #include "files/picture_png.hpp"
+#include "files/picture_roles.hpp"
+#include "report/messages.hpp"
 #include "report/progress_bar.hpp"
 #include "report/stats_report.hpp"
 #include "report/stopwatch.hpp"
@@ -38,59 +47,88 @@ std::vector<std::string> beauty_channels(const exr::Roles& roles) {
   return sum.front();
 }
 
-/// The channels that the result has; none stands for all.
-std::vector<std::string> channels_to_write(OutputLayers layers, const SurfaceInput& input) {
-  if (layers == OutputLayers::all) return {};
-  std::vector<std::string> names = channels_of_pass(input.roles, "sss");
-  if (layers == OutputLayers::sss) return names;
-  for (const std::string& name : beauty_channels(input.roles)) {
-    names.push_back(name);
-    // The alpha belongs to the beauty, whose colours are premultiplied by it.
-    const std::string alpha = name.substr(0, name.rfind('.') + 1) + "A";
-    if (input.picture.find(alpha) != nullptr) names.push_back(alpha);
-  }
-  return names;
+/// The attribute that names the passes of scattered light, so that the next run knows it for its own.
+constexpr const char* scattered_attribute = "dermis:scattered";
+
+std::string pass_of(const std::vector<std::string>& channels) {
+  return channels.front().substr(0, channels.front().rfind('.'));
 }
 
-/// The frame: what was loaded, and the results in the picture's own pixels.
-Frame frame_of(SurfaceInput& input, double mm_per_unit) {
-  const std::vector<std::string> beauty = beauty_channels(input.roles);
-  const std::vector<std::string> scattered = channels_of_pass(input.roles, "sss");
-  if (!beauty.empty() && input.picture.find(scattered.front()) != nullptr) {
-    fmt::print(stderr,
-               "dermis: warning: {} is there already; if the beauty holds scattered light, it is scattered again\n",
-               scattered.front());
+/// A file of dermis before there was the attribute has its pass under the first name.
+bool is_own_pass(const exr::Picture& picture, const std::string& pass, bool is_first) {
+  const std::string own = picture.text_attribute(scattered_attribute).value_or("");
+  if (own.empty()) return is_first && picture.text_attribute("dermis:version").has_value();
+  return (", " + own + ", ").find(", " + pass + ", ") != std::string::npos;
+}
+
+/// The channels for the scattered light: "sss", or another pass if the renderer has one of that name.
+std::vector<std::string> scattered_channels(const SurfaceInput& input, Messages& messages) {
+  const exr::Picture& picture = input.picture;
+  const auto is_there = [&](const std::string& name) { return picture.find(name) != nullptr; };
+  std::string taken;
+  for (int number = 1;; ++number) {
+    const std::string name = number == 1 ? "sss" : number == 2 ? "sss_dermis" : fmt::format("sss_dermis{}", number);
+    std::vector<std::string> channels = channels_of_pass(input.roles, name);
+    const std::string pass = pass_of(channels);
+    if (std::none_of(channels.begin(), channels.end(), is_there)) {
+      if (!taken.empty()) messages.note(fmt::format("{}: this pass is the renderer's; ours is {}", taken, pass));
+      return channels;
+    }
+    if (is_own_pass(picture, pass, number == 1)) {
+      messages.warn(ErrorCode::input_unsupported, channels.front(),
+                    "is there already, from dermis; if the beauty holds scattered light, it is scattered again");
+      return channels;
+    }
+    if (taken.empty()) taken = pass;
   }
-  input.picture.add_channels(scattered, Format::f32);
+}
+
+/// The channels of the result.
+struct ResultChannels {
+  std::vector<std::string> scattered;
+  std::vector<std::string> beauty;   ///< or none
+  std::vector<std::string> written;  ///< none stands for all
+};
+
+ResultChannels result_channels(OutputLayers layers, const SurfaceInput& input, Messages& messages) {
+  ResultChannels channels{scattered_channels(input, messages), beauty_channels(input.roles), {}};
+  if (layers == OutputLayers::all) return channels;
+  channels.written = channels.scattered;
+  if (layers == OutputLayers::sss) return channels;
+  for (const std::string& name : channels.beauty) {
+    channels.written.push_back(name);
+    // The alpha belongs to the beauty, whose colours are premultiplied by it.
+    const std::string alpha = name.substr(0, name.rfind('.') + 1) + "A";
+    if (input.picture.find(alpha) != nullptr) channels.written.push_back(alpha);
+  }
+  return channels;
+}
+
+/// The frame: what was loaded, the scattered light in the picture's own pixels, and the beauty in `beauty`.
+Frame frame_of(SurfaceInput& input, double mm_per_unit, const ResultChannels& channels, std::vector<float>& beauty) {
+  input.picture.add_channels(channels.scattered, Format::f32);
+  input.picture.make_float(channels.scattered);
   Frame frame = input.frame(mm_per_unit);
-  frame.scattered = input.picture.view_to_write(scattered);
-  if (!beauty.empty()) {
-    frame.beauty = input.picture.view(beauty);
-    frame.result = input.picture.view_to_write(beauty);
+  frame.scattered = input.picture.view_to_write(channels.scattered);
+  if (!channels.beauty.empty()) {
+    beauty = exr::load(input.picture, input.roles, Role::beauty);
+    frame.beauty = image_of(beauty);
+    frame.result = {.host = beauty.data()};
   }
   return frame;
 }
 
 /// The taps for the pixels of a picture, with a note about materials for which none are good enough.
-ChosenTaps choose_taps_for(const FilterJob& job, const std::vector<MaterialPixels>& pixels) {
-  std::vector<Material> materials = materials_of(job.surface.profiles);
-  for (std::size_t i = 0; i < materials.size(); ++i) {
-    materials[i].pixel_mm = pixels[i].pixel_mm.value_or(0);
-    materials[i].finest_pixel_mm = pixels[i].finest_pixel_mm.value_or(0);
-  }
-  ChosenTaps taps = choose_taps(std::move(materials), job.options);
-  taps.options.sheared = job.sheared;
+ChosenTaps choose_taps_for(const FilterJob& job, const std::vector<MaterialPixels>& pixels, Lighting lighting,
+                           Messages& messages) {
+  ChosenTaps taps = taps_of(job, pixels, lighting);
   if (taps.missed.empty()) return taps;
   std::vector<std::string> names;
-  for (const std::size_t i : taps.missed) {
-    const auto& id = job.surface.profiles[i].id;
-    names.push_back(id ? fmt::format("--material {}", *id) : "--profile");
-  }
+  for (const std::size_t i : taps.missed) names.push_back(option_text(job.surface.profiles[i]));
   const QualityArguments asked{job.options.quality,
                                job.options.tolerance > 0 ? std::optional(job.options.tolerance) : std::nullopt};
-  fmt::print(stderr, "dermis: note: {}: no taps are that good for {}; {}\n", command_text(asked),
-             fmt::join(names, ", "),
-             taps.options.method == Method::exact ? "the method is exact" : "they have the best");
+  messages.note(fmt::format("{}: no taps are that good for {}; {}", command_text(asked), fmt::join(names, ", "),
+                            taps.options.method == Method::exact ? "the method is exact" : "they have the best"));
   return taps;
 }
 
@@ -105,11 +143,12 @@ void check_tiles(const std::string& tile_map, Method method, const DeviceInfo& d
 }
 
 /// The progress bar goes before anything else is printed.
-Stats run_plan(FilterSession& session, const Frame& frame) {
-  ProgressBar bar;
+Stats run_plan(FilterSession& session, const Frame& frame, bool quiet) {
+  std::optional<ProgressBar> bar;
+  if (!quiet) bar.emplace();
   try {
     return session.run(frame, [&](double share) {
-      bar.update(share);
+      if (bar) bar->update(share);
       return true;
     });
   } catch (const Error& error) {
@@ -117,92 +156,273 @@ Stats run_plan(FilterSession& session, const Frame& frame) {
   }
 }
 
-/// The result, and what is to be seen beside it: none takes its place before all are written.
-void write_pictures(const FilterJob& job, const OutputFiles& files, SurfaceInput& input, const Stats& stats) {
-  exr::Picture& picture = input.picture;
-  picture.set_attribute("dermis:version", DERMIS_VERSION);
-  picture.set_attribute("dermis:command", job.command);
-  std::optional<TemporaryFile> preview;
-  if (!files.preview.empty()) {
-    preview.emplace("--preview", files.preview);
-    write_srgb_png(preview->path(), picture.width(), picture.height(), exr::load(picture, input.roles, Role::beauty));
+std::string percent(double share) { return fmt::format("{:.2g} %", 100 * share); }
+
+/// How the beauty is to be put together, said where it matters.
+Compose choose_compose(Compose asked, const PassFit& fit, const std::string& beauty, Messages& messages) {
+  const std::string numbers = fmt::format(
+      "the passes are {} off it per pixel and {} on the whole, and the diffuse light of {} of {} pixels is "
+      "brighter than it",
+      percent(fit.off), percent(std::abs(fit.missing)), fit.too_bright, fit.pixels);
+  const Compose chosen = asked == Compose::automatic ? choose_composition(fit) : asked;
+  if (chosen == Compose::sum && asked == Compose::automatic) {
+    messages.warn(ErrorCode::input_unsupported, beauty,
+                  numbers +
+                      ": they have noise that it has not, so it is their sum where it scatters; --compose "
+                      "difference keeps what is in no pass");
+  } else if (chosen == Compose::sum && !fit.adds_up() && !fit.is_complete()) {
+    messages.warn(ErrorCode::input_unsupported, beauty,
+                  numbers + ": the sum of the passes lacks what is in none of them; want --compose difference");
+  } else if (chosen == Compose::sum) {
+    messages.note(fmt::format("{}: {}; it is their sum where it scatters", beauty, numbers));
+  } else if (fit.too_bright > 0 || (asked == Compose::difference && choose_composition(fit) == Compose::sum)) {
+    messages.warn(ErrorCode::input_unsupported, beauty,
+                  numbers +
+                      ": noise of passes that are not of this beauty comes into it; want passes of one render, "
+                      "or --compose sum");
   }
-  std::optional<TemporaryFile> tile_map;
-  if (!files.tile_map.empty()) {
-    tile_map.emplace("--tile-map", files.tile_map);
-    write_tile_map_png(tile_map->path(), picture.width(), picture.height(), stats.tiles, input.loaded.light);
+  return chosen;
+}
+
+/// The beauty that the filter has changed, without what was not in the picture.
+void finish_beauty(const FilterJob& job, Compose compose, const BeautyParts& parts, const ResultChannels& channels,
+                   SurfaceInput& input, std::vector<float>& beauty, Messages& messages) {
+  std::vector<float> scattered(beauty.size());
+  for (std::size_t c = 0; c < 3; ++c) {
+    const std::vector<float> plane = input.picture.plane(channels.scattered[c]);
+    for (std::size_t i = 0; i < plane.size(); ++i) scattered[3 * i + c] = plane[i];
   }
-  picture.write(files.output, job.compression, channels_to_write(job.layers, input));
-  if (preview) preview->commit();
-  if (tile_map) tile_map->commit();
+  const Repairs repairs = compose_beauty(compose, parts, scattered, beauty);
+  const std::string name = pass_of(channels.beauty);
+  if (repairs.negative > 0)
+    messages.note(fmt::format("{}: {} values came out below 0 and are 0", name, repairs.negative));
+  if (repairs.not_finite > 0)
+    messages.warn(ErrorCode::input_unsupported, name,
+                  fmt::format("{} values came out not finite and are as they were", repairs.not_finite));
+  const std::int64_t too_large = input.picture.store(channels.beauty, beauty, job.keeps_formats);
+  if (too_large > 0 && job.keeps_formats)
+    messages.warn(ErrorCode::input_unsupported, name,
+                  fmt::format("{} values are more than a half can hold and are 65504", too_large));
+  else if (too_large > 0)
+    messages.note(fmt::format("{}: {} values are more than a half can hold: it is float now (--keep-formats: half)",
+                              name, too_large));
 }
 
 std::vector<MaterialReport> report_materials(const FilterJob& job, const std::vector<MaterialPixels>& pixels,
-                                             const Plan& plan) {
+                                             const Plan* plan) {
   std::vector<MaterialReport> reports;
   for (std::size_t i = 0; i < pixels.size(); ++i) {
     const NamedProfile& named = job.surface.profiles[i];
-    reports.push_back({named.id, without_folders(named.text), kernel_radius_mm(named.profile), pixels[i].pixels,
-                       pixels[i].pixel_mm, std::nullopt});
-    if (plan.options().method == Method::separable)
-      reports.back().taps = plan.taps_of(i, pixels[i].pixel_mm.value_or(0));
+    reports.push_back({named.id, named.name, without_folders(named.text), kernel_radius_mm(named.profile),
+                       pixels[i].pixels, pixels[i].pixel_mm, std::nullopt});
+    if (plan != nullptr && plan->options().method == Method::separable)
+      reports.back().taps = plan->taps_of(i, pixels[i].pixel_mm.value_or(0));
   }
   return reports;
 }
 
-/// One picture.
-void filter_picture(const FilterJob& job, const PictureFiles& files, FilterSession& session) {
-  Stopwatch whole;
-  Stopwatch step;
+enum class Outcome { filtered, copied };
+
+/// What became of a view.
+struct ViewResult {
+  Outcome outcome;
+  ResultChannels channels;
+  StatsReport report;
+  std::vector<float> light;  ///< RGB, for a map of tiles
+};
+
+/// A view in which nothing scatters: its light is the scattered light, too.
+ViewResult copy_view(const FilterJob& job, SurfaceInput& input, FilterSession& session, const StepTimes& times,
+                     Messages& messages) {
+  ViewResult result{Outcome::copied, result_channels(job.layers, input, messages), {}, {}};
+  check_compression(job.compression, input.picture, input.roles, result.channels.written);
+  input.picture.add_channels(result.channels.scattered, Format::f32);
+  input.picture.store(result.channels.scattered,
+                      scattering_light(input.loaded, input.lighting, job.options.albedo_mix));
+  Stats stats;
+  stats.pixels = stats.pixels_without_material =
+      std::int64_t{input.picture.width()} * std::int64_t{input.picture.height()};
+  result.report = {
+      .device = session.device().info(),
+      .asked = job.options,
+      .options = job.options,
+      .stats = stats,
+      .times = times,
+      .camera = input.camera,
+      .roles = input.roles,
+      .materials = report_materials(job, std::vector<MaterialPixels>(job.surface.profiles.size()), nullptr),
+      .notes = {},
+      .warnings = {}};
+  return result;
+}
+
+/// One view of a picture: its scattered light and its beauty come into the picture's channels. `step` has run since the
+/// picture was opened. It is copied if nothing in it scatters and that is allowed, as it is in a sequence.
+ViewResult filter_view(const FilterJob& job, const PictureFiles& files, SurfaceInput& input, FilterSession& session,
+                       Stopwatch& step, Messages& messages) {
   StepTimes times;
-  check_outputs(files);
-  SurfaceInput input = read_surface(files.input, job.surface, job.options, !files.outputs.preview.empty());
-  const std::vector<MaterialPixels> pixels = count_pixels(input, job.surface);
-  const Frame frame = frame_of(input, job.surface.mm_per_unit);
+  if (!input.scatters) {
+    if (!job.may_be_empty && job.pictures.size() == 1) require_scattering(input, job.surface);
+    messages.note(fmt::format("{}: nothing in it scatters: it is copied", files.input));
+    times.read_ms = step.lap_ms();
+    return copy_view(job, input, session, times, messages);
+  }
+  const std::vector<MaterialPixels> pixels = count_pixels(input, job.surface, messages);
+  const ResultChannels channels = result_channels(job.layers, input, messages);
+  check_compression(job.compression, input.picture, input.roles, channels.written);
+  std::vector<float> beauty;
+  const Frame frame = frame_of(input, job.surface.mm_per_unit, channels, beauty);
+  const bool has_beauty = !beauty.empty();
   times.read_ms = step.lap_ms();
+
+  std::vector<float> before = beauty;
+  const std::vector<float> other = has_beauty ? load_other_passes(input.picture, input.roles) : std::vector<float>();
+  const BeautyParts parts{before, input.loaded.light, input.loaded.albedo,   input.loaded.matte,
+                          other,  input.lighting,     job.options.albedo_mix};
+  Compose compose = Compose::difference;
+  if (has_beauty)
+    compose = choose_compose(
+        job.compose,
+        measure_passes(parts, input.picture.width(), scattering_pixels(input.loaded, job.surface.profiles)),
+        pass_of(channels.beauty), messages);
 
   const Device& device = session.device();
   const Plan* plan = nullptr;
   try {
-    const ChosenTaps taps = choose_taps_for(job, pixels);
+    const ChosenTaps taps = choose_taps_for(job, pixels, input.lighting, messages);
     check_tiles(files.outputs.tile_map, taps.options.method, device.info());
-    transmit_light(device, job.surface, taps.options.lighting, frame, input);
+    transmit_light(device, job.surface, frame, input);
+    before = beauty;  // with the light that comes through
     plan = &session.plan(taps, FrameDescription::of(frame));
   } catch (const Error& error) {
     throw named_as_option(error);
   }
   times.plan_ms = step.lap_ms();
-  const Stats stats = run_plan(session, frame);
-  warn_of_bad_pixels(stats, job.options.bad_pixels);
+  Stats stats = run_plan(session, frame, messages.quiet());
+  warn_of_bad_pixels(stats, job.options.bad_pixels, messages);
   times.run_ms = step.lap_ms();
 
-  write_pictures(job, files.outputs, input, stats);
-  times.write_ms = step.lap_ms();
-  times.total_ms = whole.lap_ms();
-  if (!files.outputs.tile_map.empty()) fmt::print("{}", legend_of(stats.tiles));
-  if (!job.stats && files.outputs.stats_json.empty()) return;
-  const StatsReport report{.device = device.info(),
-                           .asked = job.options,
-                           .options = plan->options(),
-                           .stats = stats,
-                           .times = times,
-                           .camera = input.camera,
-                           .roles = input.roles,
-                           .materials = report_materials(job, pixels, *plan)};
-  if (job.stats) fmt::print("{}", text_of(report));
-  write_text_or_print("--stats-json", files.outputs.stats_json, json_text_of(report));
+  if (has_beauty) finish_beauty(job, compose, parts, channels, input, beauty, messages);
+  return {Outcome::filtered,
+          channels,
+          {.device = device.info(),
+           .asked = job.options,
+           .options = plan->options(),
+           .stats = std::move(stats),
+           .times = times,
+           .camera = input.camera,
+           .roles = input.roles,
+           .materials = report_materials(job, pixels, plan),
+           .notes = {},
+           .warnings = {}},
+          files.outputs.tile_map.empty() ? std::vector<float>() : std::move(input.loaded.light)};
+}
+
+/// The channels to write of all views; none stands for all that there are.
+std::vector<std::string> written_channels(const std::vector<ViewResult>& results) {
+  std::vector<std::string> all;
+  for (const ViewResult& result : results)
+    all.insert(all.end(), result.channels.written.begin(), result.channels.written.end());
+  return all;
+}
+
+/// The result, and what is to be seen beside it: none takes its place before all are written.
+void write_pictures(const FilterJob& job, const OutputFiles& files, const std::vector<ViewResult>& results,
+                    exr::Picture& picture) {
+  std::vector<std::string> passes;
+  for (const ViewResult& result : results) passes.push_back(pass_of(result.channels.scattered));
+  picture.set_attribute("dermis:version", DERMIS_VERSION);
+  picture.set_attribute("dermis:command", job.command);
+  picture.set_attribute(scattered_attribute, fmt::format("{}", fmt::join(passes, ", ")));
+  const ViewResult& shown = results.front();
+  std::optional<TemporaryFile> preview;
+  if (!files.preview.empty()) {
+    preview.emplace(files.preview, "--preview");
+    write_srgb_png(*preview, picture.width(), picture.height(), exr::load(picture, shown.report.roles, Role::beauty));
+  }
+  std::optional<TemporaryFile> tile_map;
+  if (!files.tile_map.empty() && shown.outcome == Outcome::filtered) {
+    tile_map.emplace(files.tile_map, "--tile-map");
+    write_tile_map_png(*tile_map, picture.width(), picture.height(), shown.report.stats.tiles, shown.light);
+  }
+  picture.write(files.output, job.compression, written_channels(results));
+  if (preview) preview->commit();
+  if (tile_map) tile_map->commit();
+}
+
+/// A preview and a map of tiles are of one view.
+void check_views(const std::vector<std::string>& views, const OutputFiles& files) {
+  const std::string argument = !files.preview.empty() ? "--preview" : !files.tile_map.empty() ? "--tile-map" : "";
+  if (views.size() > 1 && !argument.empty())
+    throw Error(ErrorCode::usage, argument, fmt::format("it for the views {}", fmt::join(views, ", ")),
+                "--eye with one of them");
+}
+
+/// One picture, view by view.
+Outcome filter_picture(const FilterJob& job, const PictureFiles& files, FilterSession& session, Messages& messages) {
+  Stopwatch whole;
+  Stopwatch step;
+  check_outputs(files);
+  exr::Picture picture = read_picture(files.input);
+  const std::vector<std::string> views = views_of(picture, job.surface.picture);
+  check_views(views, files.outputs);
+  std::vector<ViewResult> results;
+  for (const std::string& view : views) {
+    SurfaceInput input = load_surface(picture, files.input, view, job.surface, !files.outputs.preview.empty());
+    results.push_back(filter_view(job, files, input, session, step, messages));
+  }
+  write_pictures(job, files.outputs, results, picture);
+  std::vector<StatsReport> reports;
+  for (ViewResult& result : results) {
+    result.report.times.write_ms = step.lap_ms();
+    result.report.times.total_ms = whole.lap_ms();
+    result.report.notes = messages.notes();
+    result.report.warnings = messages.warnings();
+    if (!files.outputs.tile_map.empty()) fmt::print("{}", legend_of(result.report.stats.tiles));
+    if (job.stats) fmt::print("{}", text_of(result.report));
+    reports.push_back(std::move(result.report));
+  }
+  if (!files.outputs.stats_json.empty())
+    write_text_or_print("--stats-json", files.outputs.stats_json, json_text_of(reports));
+  const bool is_copied = std::all_of(results.begin(), results.end(),
+                                     [](const ViewResult& result) { return result.outcome == Outcome::copied; });
+  return is_copied ? Outcome::copied : Outcome::filtered;
+}
+
+/// Several pictures. One that fails is named, and the others are done nevertheless. Returns the first failure's code.
+int filter_sequence(const FilterJob& job, FilterSession& session, Messages& messages) {
+  session.device();  // without one there is nothing to go on with
+  const std::size_t count = job.pictures.size();
+  std::size_t failed = 0;
+  std::size_t copied = 0;
+  int code = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto& [input, outputs] = job.pictures[i];
+    if (job.stats || !outputs.tile_map.empty()) fmt::print("{}\n", outputs.output);
+    messages.begin(input);
+    try {
+      if (filter_picture(job, job.pictures[i], session, messages) == Outcome::copied) ++copied;
+      if (!messages.quiet()) fmt::print(stderr, "dermis: {} of {}: {}\n", i + 1, count, outputs.output);
+    } catch (...) {
+      const int its_code = report_exception(input);
+      if (failed++ == 0) code = its_code;
+    }
+  }
+  if (failed > 0) print_error(fmt::format("{} of {} pictures failed", failed, count));
+  if (failed == 0 && copied == count && !job.may_be_empty)
+    throw Error(ErrorCode::role_missing, job.surface.profiles.front().id ? "--material" : "--profile",
+                fmt::format("{} pictures in which nothing scatters, which are copied", count),
+                "something that scatters, or --allow-empty");
+  return code;
 }
 
 int run_filter(const FilterArguments& arguments) {
   const FilterJob job = job_of(arguments);
   FilterSession session(job.device, job.reuse);
-  const std::size_t count = job.pictures.size();
-  for (std::size_t i = 0; i < count; ++i) {
-    const OutputFiles& outputs = job.pictures[i].outputs;
-    if (count > 1 && (job.stats || !outputs.tile_map.empty())) fmt::print("{}\n", outputs.output);
-    filter_picture(job, job.pictures[i], session);
-    if (count > 1) fmt::print(stderr, "dermis: {} of {}: {}\n", i + 1, count, outputs.output);
-  }
+  Messages messages(job.messages);
+  if (job.pictures.size() > 1) return filter_sequence(job, session, messages);
+  messages.begin(job.pictures.front().input);
+  filter_picture(job, job.pictures.front(), session, messages);
   return 0;
 }
 

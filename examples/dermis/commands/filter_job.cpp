@@ -107,7 +107,7 @@ std::string record_of(const FilterArguments& arguments, const FilterJob& job) {
   for (const NamedProfile& named : job.surface.profiles) {
     const std::string profile = without_folders(named.text);
     if (named.id)
-      add("--material", fmt::format("{}={}", *named.id, profile));
+      add("--material", fmt::format("{}={}", named.name.value_or(std::to_string(*named.id)), profile));
     else
       add("--profile", profile);
   }
@@ -121,12 +121,13 @@ std::string record_of(const FilterArguments& arguments, const FilterJob& job) {
   }
   if (options.method == Method::disc) text += command_text(options.disc);
   if (options.method != Method::exact) add("--seed", options.seed);
-  add("--lighting", name_of(options.lighting));
+  if (arguments.surface.lighting) add("--lighting", name_of(*arguments.surface.lighting));
   add("--albedo-mix", options.albedo_mix);
   text += command_text(arguments.surface.translucency);
+  if (arguments.compose != Compose::automatic) add("--compose", name_of(arguments.compose));
   add("--bad-pixels", name_of(options.bad_pixels));
   text += command_text(job.surface.picture.camera);
-  for (const std::string& matte : job.surface.cryptomatte) add("--cryptomatte", matte);
+  for (const std::string& matte : arguments.surface.cryptomatte) add("--cryptomatte", matte);
   return text + text_of_roles(job.surface.picture);
 }
 
@@ -148,6 +149,10 @@ FilterJob job_of(const FilterArguments& arguments) {
                 .stats = arguments.output.stats,
                 .compression = arguments.output.compression,
                 .layers = arguments.layers,
+                .compose = arguments.compose,
+                .keeps_formats = arguments.keeps_formats,
+                .may_be_empty = arguments.may_be_empty,
+                .messages = arguments.messages,
                 .device = arguments.device,
                 .command = {}};
   if (options.taps.tolerance > 0 && arguments.design.rank)  // a quality would take neither
@@ -156,7 +161,7 @@ FilterJob job_of(const FilterArguments& arguments) {
   return job;
 }
 
-ChosenTaps taps_of(const FilterJob& job, const std::vector<MaterialPixels>& pixels) {
+ChosenTaps taps_of(const FilterJob& job, const std::vector<MaterialPixels>& pixels, Lighting lighting) {
   std::vector<Material> materials = materials_of(job.surface.profiles);
   for (std::size_t i = 0; i < materials.size(); ++i) {
     materials[i].pixel_mm = pixels[i].pixel_mm.value_or(0);
@@ -164,6 +169,7 @@ ChosenTaps taps_of(const FilterJob& job, const std::vector<MaterialPixels>& pixe
   }
   ChosenTaps taps = choose_taps(std::move(materials), job.options);
   taps.options.sheared = job.sheared;
+  taps.options.lighting = lighting;
   return taps;
 }
 

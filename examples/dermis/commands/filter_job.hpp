@@ -18,6 +18,10 @@ struct FilterJob {
   bool stats;
   std::string compression;
   OutputLayers layers;
+  Compose compose;
+  bool keeps_formats;
+  bool may_be_empty;
+  MessageArguments messages;
   DeviceArguments device;
   std::string command;  ///< a command without the names of pictures and folders, for the record in the result
 };
@@ -25,7 +29,7 @@ struct FilterJob {
 /// Throws Error(usage) for what the command line needs and lacks, and for what contradicts; and as request_of.
 FilterJob job_of(const FilterArguments& arguments);
 
-/// The taps that the job asks for, for the pixels of each material.
-ChosenTaps taps_of(const FilterJob& job, const std::vector<MaterialPixels>& pixels);
+/// The taps that the job asks for, for the pixels of each material and for such light.
+ChosenTaps taps_of(const FilterJob& job, const std::vector<MaterialPixels>& pixels, Lighting lighting);
 
 }  // namespace dermis::program

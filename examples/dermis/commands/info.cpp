@@ -19,6 +19,7 @@
 #include "dermis/exr.hpp"
 #include "dermis/plan.hpp"
 #include "files/loaded_frame.hpp"
+#include "files/picture_roles.hpp"
 #include "files/surface_pixels.hpp"
 #include "report/json_text.hpp"
 #include "report/role_text.hpp"
@@ -45,7 +46,8 @@ struct Reach {
 };
 
 struct Surface {
-  std::optional<int> id;  ///< none: every pixel
+  std::optional<int> id;            ///< none: every pixel
+  std::optional<std::string> name;  ///< in a Cryptomatte
   SurfacePixels pixels;
   std::optional<Reach> reach;  ///< if a profile was given for it
 };
@@ -56,8 +58,10 @@ struct Memory {
 };
 
 struct Info {
+  std::string path;
   exr::Picture picture;
   exr::Roles roles;
+  std::vector<exr::Cryptomatte> cryptomattes;
   std::optional<exr::FoundCamera> camera;
   std::string camera_problem;  ///< why there is none
   std::vector<Surface> surfaces;
@@ -86,21 +90,28 @@ Reach reach_of(const NamedProfile& named, const SurfacePixels& pixels, const Inf
 
 void find_surfaces(Info& info, const std::vector<NamedProfile>& profiles, const std::optional<double>& mm_per_unit) {
   const std::vector<float> depth = exr::load_depth(info.picture, info.roles, info.camera.value_or(exr::FoundCamera{}));
-  MaterialCounts counts = count_materials(exr::load(info.picture, info.roles, Role::material), depth);
+  const std::vector<MatteId> mattes = mattes_of(profiles);
+  MaterialCounts counts =
+      count_materials(mattes.empty() ? exr::load(info.picture, info.roles, Role::material)
+                                     : load_named_mattes(info.picture, info.roles, mattes, folder_of(info.path)).ids,
+                      depth);
   info.pixels_without_id = counts.without_id;
   for (const NamedProfile& named : profiles) {
     if (named.id) {
       counts.by_id[*named.id];
       continue;
     }
-    Surface all{{}, count_surface(depth, exr::load(info.picture, info.roles, Role::mask)), {}};
+    Surface all{{}, {}, count_surface(depth, exr::load(info.picture, info.roles, Role::mask)), {}};
     all.reach = reach_of(named, all.pixels, info, mm_per_unit);
     info.surfaces.push_back(all);
   }
   for (const auto& [id, pixels] : counts.by_id) {
-    Surface surface{id, pixels, {}};
-    for (const NamedProfile& named : profiles)
-      if (named.id == id) surface.reach = reach_of(named, pixels, info, mm_per_unit);
+    Surface surface{id, {}, pixels, {}};
+    for (const NamedProfile& named : profiles) {
+      if (named.id != id) continue;
+      surface.name = named.name;
+      surface.reach = reach_of(named, pixels, info, mm_per_unit);
+    }
     info.surfaces.push_back(surface);
   }
 }
@@ -153,10 +164,10 @@ std::optional<Memory> find_memory(const Info& info, const std::vector<NamedProfi
                                   const std::optional<double>& mm_per_unit, const std::string& cache_folder) {
   try {
     const std::vector<NamedProfile> asked =
-        profiles.empty() ? std::vector<NamedProfile>{{{}, presets().front().name, presets().front().profile}}
+        profiles.empty() ? std::vector<NamedProfile>{{{}, {}, presets().front().name, presets().front().profile}}
                          : profiles;
     const Options options{.quality = default_quality, .cache_folder = cache_folder};
-    require_roles(info.picture, info.roles, asked, options);
+    require_roles(info.picture, info.roles, asked, !mattes_of(asked).empty());
     const auto frames = describe_frame(info, have_ids(asked));
     if (!frames) return std::nullopt;
     std::size_t pixel_bytes = bytes_of_pixel(*frames);
@@ -179,7 +190,9 @@ json json_of(const exr::Window& window) {
 }
 
 json json_of(const Surface& surface) {
-  json object = {{"id", surface.id ? json(*surface.id) : json(nullptr)}, {"pixels", surface.pixels.pixels}};
+  json object = {{"id", surface.id ? json(*surface.id) : json(nullptr)},
+                 {"name", surface.name ? json(*surface.name) : json(nullptr)},
+                 {"pixels", surface.pixels.pixels}};
   const auto& depth = surface.pixels.median_depth_units;
   object["median_depth_units"] = depth ? json(*depth) : json(nullptr);
   if (!surface.reach) return object;
@@ -189,8 +202,8 @@ json json_of(const Surface& surface) {
   return object;
 }
 
-std::string json_text_of(const Info& info, const std::string& path) {
-  json object = {{"file", path},
+std::string json_text_of(const Info& info) {
+  json object = {{"file", info.path},
                  {"width", info.picture.width()},
                  {"height", info.picture.height()},
                  {"data_window", json_of(info.picture.data_window())},
@@ -198,9 +211,16 @@ std::string json_text_of(const Info& info, const std::string& path) {
                  {"pixel_aspect", info.picture.pixel_aspect()},
                  {"compression", info.picture.compression()},
                  {"channels", info.picture.channels().size()},
+                 {"views", info.picture.views()},
                  {"roles", program::json_of(info.roles)},
+                 {"cryptomattes", json::array()},
                  {"materials", json::array()},
                  {"pixels_without_id", info.pixels_without_id}};
+  for (const auto& [name, names] : info.cryptomattes) {
+    json entry = {{"name", name}, {"names", json::array()}};
+    for (const auto& [of, pixels] : names) entry["names"].push_back({{"name", of}, {"pixels", pixels}});
+    object["cryptomattes"].push_back(std::move(entry));
+  }
   object["camera"] = info.camera ? program::json_of(*info.camera) : json(nullptr);
   if (!info.camera) object["camera_problem"] = info.camera_problem;
   for (const Surface& surface : info.surfaces) object["materials"].push_back(json_of(surface));
@@ -214,8 +234,11 @@ std::string text_of(const exr::Window& window) {
 }
 
 std::string text_of(const Surface& surface) {
-  std::string text =
-      fmt::format("  {:<8} {:>10} pixels", surface.id ? std::to_string(*surface.id) : "any", surface.pixels.pixels);
+  std::string text = fmt::format("  {:<8} {:>10} pixels",
+                                 surface.name ? *surface.name
+                                 : surface.id ? std::to_string(*surface.id)
+                                              : "any",
+                                 surface.pixels.pixels);
   if (surface.pixels.median_depth_units)
     text += fmt::format(", median depth {:.6g} units", *surface.pixels.median_depth_units);
   if (surface.reach) {
@@ -225,17 +248,27 @@ std::string text_of(const Surface& surface) {
   return text + "\n";
 }
 
-std::string text_of(const Info& info, const std::string& path) {
-  std::string text = fmt::format("file            {}\n", path);
+std::string text_of(const Info& info) {
+  std::string text = fmt::format("file            {}\n", info.path);
   text += fmt::format("data window     {}\n", text_of(info.picture.data_window()));
   text += fmt::format("display window  {}\n", text_of(info.picture.display_window()));
   text += fmt::format("pixel aspect    {}\n", info.picture.pixel_aspect());
   text += fmt::format("compression     {}\n", info.picture.compression());
   text += fmt::format("channels        {}\n", info.picture.channels().size());
   text += fmt::format("layer           {}\n", info.roles.layer.empty() ? "none" : info.roles.layer);
+  if (const auto views = info.picture.views(); !views.empty())
+    text += fmt::format("views           {}, of which this is {}\n", fmt::join(views, ", "), info.roles.view);
+  text += fmt::format("renderer        {}\n",
+                      info.roles.renderer.empty()
+                          ? "none whose names are known"
+                          : fmt::format("{}, light {}", info.roles.renderer, name_of(info.roles.lighting)));
   text += "roles\n";
   for (const exr::RoleInfo& role : exr::role_table)
     text += fmt::format("  {:<13} {}\n", role.name, program::text_of(info.roles[role.role]));
+  for (const auto& [name, names] : info.cryptomattes) {
+    text += fmt::format("cryptomatte     {}{}\n", name, names.empty() ? ", without a manifest" : "");
+    for (const auto& [of, pixels] : names) text += fmt::format("  {:<30} {:>10} pixels\n", of, pixels);
+  }
   text += fmt::format("camera          {}\n",
                       info.camera ? program::text_of(*info.camera) : "none, " + info.camera_problem);
   if (!info.surfaces.empty()) text += "materials\n";
@@ -252,12 +285,14 @@ std::string text_of(const Info& info, const std::string& path) {
 
 int run_info(const InfoArguments& arguments) {
   const std::vector<NamedProfile> profiles = parse_profiles(arguments.materials);
-  Info info{exr::Picture::read(arguments.path), {}, {}, {}, {}, 0, {}};
-  info.roles = exr::find_roles(info.picture, arguments.picture.roles, arguments.picture.layer);
+  Info info{arguments.path, exr::Picture::read(arguments.path), {}, {}, {}, {}, {}, 0, {}};
+  info.roles =
+      roles_of(info.picture, arguments.path, arguments.picture, views_of(info.picture, arguments.picture).front());
+  info.cryptomattes = exr::find_cryptomattes(info.picture, info.roles, folder_of(arguments.path));
   find_camera(info, arguments.picture.camera);
   find_surfaces(info, profiles, arguments.picture.mm_per_unit);
   info.memory = find_memory(info, profiles, arguments.picture.mm_per_unit, cache_folder_of(arguments.cache_dir));
-  fmt::print("{}", arguments.json ? json_text_of(info, arguments.path) : text_of(info, arguments.path));
+  fmt::print("{}", arguments.json ? json_text_of(info) : text_of(info));
   return 0;
 }
 

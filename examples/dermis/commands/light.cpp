@@ -24,6 +24,7 @@
 #include "files/lights_file.hpp"
 #include "files/output_file.hpp"
 #include "files/pass_channels.hpp"
+#include "files/picture_roles.hpp"
 
 namespace dermis::program {
 namespace {
@@ -35,6 +36,7 @@ struct LightArguments {
   PictureArguments picture;
   std::string lights;
   std::string output;
+  bool in_place = false;
   std::string compression;
   std::string device;
   std::vector<double> eye;
@@ -78,10 +80,11 @@ void clear_others(exr::Picture& picture, const exr::Roles& roles, Role role) {
 }
 
 int run_light(const LightArguments& arguments) {
+  check_in_place(arguments.in_place, arguments.path, arguments.output);
   check_writable("--output", arguments.output);
   const LightsFile lights("--lights", arguments.lights);
   exr::Picture picture = exr::Picture::read(arguments.path);
-  const exr::Roles roles = exr::find_roles(picture, arguments.picture.roles, arguments.picture.layer);
+  const exr::Roles roles = roles_of(picture, arguments.path, arguments.picture);
   for (const Role role : {Role::position, Role::normal, Role::albedo}) exr::require(picture, roles, role);
   const Viewer viewer = viewer_of(arguments, picture, roles);
   const std::vector<float> position = exr::load(picture, roles, Role::position);
@@ -98,7 +101,7 @@ int run_light(const LightArguments& arguments) {
   options.normal_offset_texels = arguments.normal_offset_texels;
   options.softness_texels = arguments.softness_texels;
   const std::vector<Light> sources = lights.lights();
-  Shading(Device::open(arguments.device), options)
+  Shading(open_device({arguments.device}), options)
       .run({.width = picture.width(),
             .height = picture.height(),
             .position = {.host = position.data()},
@@ -110,6 +113,8 @@ int run_light(const LightArguments& arguments) {
             .seen = picture.view_to_write(seen),
             .specular = picture.view_to_write(specular),
             .beauty = picture.view_to_write(beauty)});
+  // A pass "sss" of the renderer's is still its own.
+  if (!picture.text_attribute("dermis:version")) picture.set_attribute("dermis:scattered", "none");
   picture.set_attribute("dermis:version", DERMIS_VERSION);
   picture.write(arguments.output, arguments.compression);
   return 0;
@@ -130,6 +135,7 @@ Command add_light(CLI::App& parent) {
       ->required()
       ->check(file_name_ending({".exr"}))
       ->type_name("OUT.exr");
+  add_in_place_argument(*app, arguments->in_place);
   add_role_arguments(*app, arguments->picture);
   app->add_option("--eye", arguments->eye, "where the picture is seen from; else found from position and depth")
       ->delimiter(',')

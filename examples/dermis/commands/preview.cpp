@@ -27,7 +27,7 @@ struct Beauty {
 
 Beauty read_beauty(const std::string& path, const std::vector<std::string>& role_overrides) {
   const exr::Picture picture = exr::Picture::read(path);
-  const exr::Roles roles = exr::find_roles(picture, role_overrides);
+  const exr::Roles roles = exr::find_roles(picture, {.overrides = role_overrides});
   exr::require(picture, roles, exr::Role::beauty);
   return {picture.width(), picture.height(), exr::load(picture, roles, exr::Role::beauty)};
 }
@@ -56,8 +56,8 @@ int run_preview(const PreviewArguments& arguments) {
   std::vector<Beauty> beauties;
   for (const std::string& path : arguments.pictures) beauties.push_back(read_beauty(path, arguments.roles));
   const Beauty sheet = side_by_side(beauties);
-  TemporaryFile file("--output", arguments.output);
-  write_srgb_png(file.path(), sheet.width, sheet.height, sheet.rgb);
+  TemporaryFile file(arguments.output, "--output");
+  write_srgb_png(file, sheet.width, sheet.height, sheet.rgb);
   file.commit();
   return 0;
 }

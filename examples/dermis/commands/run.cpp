@@ -1,13 +1,13 @@
 // The program but for main(): it reads the command line, runs one subcommand, and turns errors into exit codes.
 #include "commands/run.hpp"
 
-#include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
-#include <new>
 #include <string>
 #include <string_view>
 
@@ -15,21 +15,15 @@
 #include "commands/commands.hpp"
 #include "dermis/error.hpp"
 #include "dermis/version.hpp"
+#include "exr/temporary_file.hpp"
+#include "files/pocl_cache.hpp"
+#include "report/messages.hpp"
 
 namespace dermis::program {
 namespace {
 
-/// Names of files and channels come from outside: nothing in them may break the line or steer the terminal.
-std::string one_line(std::string_view message) {
-  std::string line(message);
-  std::replace_if(
-      line.begin(), line.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, ' ');
-  return line;
-}
-
 int fail(ErrorCode code, std::string_view message) {
-  std::fflush(stdout);
-  fmt::print(stderr, "dermis: error: {}\n", one_line(message));
+  print_error(message);
   return static_cast<int>(code);
 }
 
@@ -73,20 +67,57 @@ int parse_and_run(int argc, char** argv) {
   return finish(chosen->run());
 }
 
+/// A library that ends the process, as PoCL's compiler does when its cache is full, ends it with a code of its own: 1,
+/// which says that pictures differ.
+bool is_running = false;
+
+void end_of_process() {
+  if (!is_running) return;
+  const Error error(ErrorCode::device, "OpenCL", "an end of the process by its driver; " + cache_problem().value_or(""),
+                    "room in the cache, or POCL_CACHE_DIR=FOLDER elsewhere");
+  fail(error.code(), error.what());
+  _exit(static_cast<int>(ErrorCode::device));
+}
+
+void end_by_signal(int number) {
+  exr::remove_temporary_files();
+  raise(number);  // whose handler was reset to that of the system
+}
+
+/// A signal that ends the process leaves no temporary files; one that is ignored, as by nohup, stays so. A limit on the
+/// size of files makes writing fail.
+void handle_signals() {
+  for (const int number : {SIGHUP, SIGINT, SIGTERM}) {
+    struct sigaction before = {};
+    sigaction(number, nullptr, &before);
+    if (before.sa_handler != SIG_DFL) continue;
+    struct sigaction action = {};
+    action.sa_handler = end_by_signal;
+    action.sa_flags = static_cast<int>(SA_RESETHAND) | SA_NODEFER;
+    sigaction(number, &action, nullptr);
+  }
+  std::signal(SIGXFSZ, SIG_IGN);
+}
+
+int parse_and_run_safely(int argc, char** argv) {
+  try {
+    return parse_and_run(argc, argv);
+  } catch (...) {
+    return report_exception();
+  }
+}
+
 }  // namespace
 
 int run(int argc, char** argv) {
   // PoCL would otherwise hide integer divisions by zero of the host program. It reads this at the first OpenCL call.
   setenv("POCL_SIGFPE_HANDLER", "0", 0);
-  try {
-    return parse_and_run(argc, argv);
-  } catch (const Error& error) {
-    return fail(error.code(), error.what());
-  } catch (const std::bad_alloc&) {
-    return fail(ErrorCode::device, "memory: got no more from the system, want enough for the picture");
-  } catch (const std::exception& error) {
-    return fail(ErrorCode::device, error.what());
-  }
+  handle_signals();
+  std::atexit(end_of_process);
+  is_running = true;
+  const int code = parse_and_run_safely(argc, argv);
+  is_running = false;
+  return code;
 }
 
 }  // namespace dermis::program

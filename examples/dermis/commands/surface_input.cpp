@@ -2,9 +2,14 @@
 
 #include <fmt/format.h>
 
-#include <cstdio>
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
 #include <future>
 
+#include "dermis/error.hpp"
+#include "files/picture_roles.hpp"
 #include "files/surface_pixels.hpp"
 
 namespace dermis::program {
@@ -28,25 +33,40 @@ Frame SurfaceInput::frame(double mm_per_unit) const {
   return frame;
 }
 
-SurfaceInput read_surface(const std::string& path, const SurfaceRequest& request, const Options& options,
-                          bool needs_beauty) {
-  constexpr std::size_t added_channels = 3;  // of the scattered light
-  SurfaceInput input{exr::Picture::read(path, added_channels), {}, {}, {}, {}};
-  const exr::Picture& picture = input.picture;
-  input.roles = exr::find_roles(picture, request.picture.roles, request.picture.layer);
-  require_roles(picture, input.roles, request.profiles, options, !request.cryptomatte.empty());
+exr::Picture read_picture(const std::string& path) {
+  constexpr std::size_t added_channels = 3;  // of one view
+  return exr::Picture::read(path, added_channels);
+}
+
+SurfaceInput load_surface(exr::Picture& picture, const std::string& path, const std::string& view,
+                          const SurfaceRequest& request, bool needs_beauty) {
+  SurfaceInput input{picture, roles_of(picture, path, request.picture, view), {}, {}, {}, {}, true};
+  input.lighting = request.lighting.value_or(input.roles.lighting);
+  require_roles(picture, input.roles, request.profiles, !request.mattes.empty());
   if (needs_beauty) exr::require(picture, input.roles, Role::beauty);
   // The camera takes as long to find as the images take to load, and needs none of them.
-  auto images = std::async(std::launch::async,
-                           [&] { return load_images(picture, input.roles, request.profiles, request.cryptomatte); });
-  input.camera = exr::find_camera(picture, input.roles, request.picture.camera);
-  input.loaded = images.get();
-  input.loaded.depth = load_depth_image(picture, input.roles, input.camera);
+  auto camera =
+      std::async(std::launch::async, [&] { return exr::find_camera(picture, input.roles, request.picture.camera); });
+  input.loaded = load_images(picture, input.roles, request.profiles, request.mattes, folder_of(path));
+  const auto scatters = [&] {
+    const std::vector<std::uint8_t> pixels = scattering_pixels(input.loaded, request.profiles);
+    return std::find(pixels.begin(), pixels.end(), 1) != pixels.end();
+  };
+  try {
+    input.camera = camera.get();
+    input.loaded.depth = load_depth_image(picture, input.roles, input.camera);
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::role_missing) throw;
+    input.loaded.depth = load_depth_image(picture, input.roles);
+    if (scatters()) throw;
+    input.camera.source = "none, as nothing scatters";
+  }
+  input.scatters = scatters();
   if (request.lights) input.translucency = load_translucency_images(picture, input.roles);
   return input;
 }
 
-std::vector<MaterialPixels> count_pixels(const SurfaceInput& input, const SurfaceRequest& request) {
+std::vector<MaterialPixels> count_pixels(const SurfaceInput& input, const SurfaceRequest& request, Messages& messages) {
   const MaterialCounts counts = count_materials(input.loaded.material, input.loaded.depth);
   std::vector<MaterialPixels> all;
   for (const NamedProfile& named : request.profiles) {
@@ -56,7 +76,7 @@ std::vector<MaterialPixels> count_pixels(const SurfaceInput& input, const Surfac
     } else if (const auto found = counts.by_id.find(*named.id); found != counts.by_id.end()) {
       pixels = found->second;
     } else {
-      fmt::print(stderr, "dermis: warning: --material {}: no pixel has this id\n", *named.id);
+      messages.warn(ErrorCode::role_missing, option_text(named), "no pixel is of this material");
     }
     const Camera& camera = input.camera.camera;
     all.push_back({pixels.pixels, pixel_mm_at(pixels.median_depth_units, camera, request.mm_per_unit),
@@ -65,8 +85,23 @@ std::vector<MaterialPixels> count_pixels(const SurfaceInput& input, const Surfac
   return all;
 }
 
-void transmit_light(const Device& device, const SurfaceRequest& request, Lighting lighting, const Frame& frame,
-                    SurfaceInput& input) {
+void require_scattering(const SurfaceInput& input, const SurfaceRequest& request) {
+  if (input.scatters) return;
+  constexpr std::size_t most_ids = 20;
+  std::vector<int> wanted;
+  for (const NamedProfile& named : request.profiles)
+    if (named.id) wanted.push_back(*named.id);
+  std::vector<int> seen;
+  for (const auto& [id, pixels] : count_materials(input.loaded.material, input.loaded.depth).by_id)
+    if (seen.size() < most_ids) seen.push_back(id);
+  throw Error(ErrorCode::role_missing, wanted.empty() ? "--profile" : "--material",
+              wanted.empty() ? "a picture of background only"
+                             : fmt::format("{}, and no pixel of it that scatters; the ids in the picture are {}",
+                                           fmt::join(wanted, ", "), fmt::join(seen, ", ")),
+              "something that scatters");
+}
+
+void transmit_light(const Device& device, const SurfaceRequest& request, const Frame& frame, SurfaceInput& input) {
   if (!request.lights) return;
   const TranslucencyImages& images = *input.translucency;
   const std::vector<Light> sources = request.lights->lights();
@@ -85,7 +120,7 @@ void transmit_light(const Device& device, const SurfaceRequest& request, Lightin
                                  .lit = {.host = input.loaded.light.data()},
                                  .result = frame.result};
   TranslucencyOptions options = request.translucency;
-  options.lighting = lighting;
+  options.lighting = input.lighting;
   Translucency(device, materials_of(request.profiles), lit.description(), options).run(lit);
 }
 

@@ -11,6 +11,7 @@
 #include "dermis/plan.hpp"
 #include "dermis/translucency.hpp"
 #include "files/loaded_frame.hpp"
+#include "report/messages.hpp"
 
 namespace dermis::program {
 
@@ -21,20 +22,27 @@ struct TranslucencyImages {
   std::vector<float> thickness;  ///< or empty
 };
 
+/// One view of a picture.
 struct SurfaceInput {
-  exr::Picture picture;
+  exr::Picture& picture;
   exr::Roles roles;
+  Lighting lighting;
   exr::FoundCamera camera;
   LoadedFrame loaded;
   std::optional<TranslucencyImages> translucency;
+  bool scatters = true;  ///< any pixel; if none does there may be no camera
 
   /// A view of the images, with the camera and nothing to write.
   Frame frame(double mm_per_unit) const;
 };
 
-/// Throws Error(input_missing), Error(input_unsupported) or Error(role_missing) for what the picture lacks.
-SurfaceInput read_surface(const std::string& path, const SurfaceRequest& request, const Options& options,
-                          bool needs_beauty);
+/// Reads the file, with room for the scattered light of a view.
+exr::Picture read_picture(const std::string& path);
+
+/// Loads what is needed of a view of a picture, which is that of `path`. Throws Error(input_missing),
+/// Error(input_unsupported) or Error(role_missing) for what it lacks.
+SurfaceInput load_surface(exr::Picture& picture, const std::string& path, const std::string& view,
+                          const SurfaceRequest& request, bool needs_beauty);
 
 /// The pixels of a material. Sizes are along the axis that has the smaller ones; none if no pixel is of the material.
 struct MaterialPixels {
@@ -43,11 +51,13 @@ struct MaterialPixels {
   std::optional<double> finest_pixel_mm;  ///< at the nearest depth
 };
 
-/// Counts the pixels of each profile. Warns on stderr of a material that no pixel has.
-std::vector<MaterialPixels> count_pixels(const SurfaceInput& input, const SurfaceRequest& request);
+/// Counts the pixels of each profile. Warns of a material that no pixel has.
+std::vector<MaterialPixels> count_pixels(const SurfaceInput& input, const SurfaceRequest& request, Messages& messages);
+
+/// Throws Error(role_missing) that names the materials if nothing in the picture scatters.
+void require_scattering(const SurfaceInput& input, const SurfaceRequest& request);
 
 /// Adds the light that comes through, if it was asked for, to that of the input, which `frame` views.
-void transmit_light(const Device& device, const SurfaceRequest& request, Lighting lighting, const Frame& frame,
-                    SurfaceInput& input);
+void transmit_light(const Device& device, const SurfaceRequest& request, const Frame& frame, SurfaceInput& input);
 
 }  // namespace dermis::program

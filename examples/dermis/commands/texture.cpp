@@ -23,6 +23,7 @@
 #include "files/loaded_frame.hpp"
 #include "files/output_file.hpp"
 #include "files/pass_channels.hpp"
+#include "files/picture_roles.hpp"
 
 namespace dermis::program {
 namespace {
@@ -136,7 +137,7 @@ void filter_texture(const TextureArguments& arguments, const PictureFiles& files
                     Session& session) {
   check_outputs(files);
   exr::Picture picture = exr::Picture::read(files.input);
-  const exr::Roles roles = exr::find_roles(picture, arguments.picture.roles, arguments.picture.layer);
+  const exr::Roles roles = roles_of(picture, files.input, arguments.picture);
   const LoadedTexture loaded = load_texture(arguments, picture, roles);
   const std::vector<std::string> scattered = channels_of_pass(roles, "sss");
   const std::vector<std::string> result = channels_of_pass(roles, "sss_albedo");

@@ -1,8 +1,12 @@
 /// The images of a picture that the filter reads, in memory as float.
 #pragma once
 
+#include <cstdint>
+#include <filesystem>
+#include <string>
 #include <vector>
 
+#include "arguments/cryptomatte_argument.hpp"
 #include "arguments/material_arguments.hpp"
 #include "dermis/exr.hpp"
 #include "dermis/frame.hpp"
@@ -22,23 +26,35 @@ struct LoadedFrame {
   std::vector<float> material;  ///< or empty
   std::vector<float> mask;      ///< or empty
   std::vector<float> matte;     ///< or empty
+  std::string cryptomatte;      ///< the one that material and matte are from, or empty
 
   /// Views of these images, and nothing else of a frame.
   Frame frame() const;
 };
 
-/// Throws Error(role_missing) if the picture lacks a role that these profiles and options need. `has_cryptomatte`: ids
-/// come from there.
-void require_roles(const exr::Picture& picture, const exr::Roles& roles, const std::vector<NamedProfile>& profiles,
-                   const Options& options, bool has_cryptomatte = false);
+/// 1 for the pixels that scatter, 0 for the others: those of background, of no material, or with nothing of it.
+std::vector<std::uint8_t> scattering_pixels(const LoadedFrame& loaded, const std::vector<NamedProfile>& profiles);
 
-/// The roles that the picture has but for depth; ids only if the profiles tell materials apart, from `cryptomatte`
-/// (NAME=ID) if that is not empty. Throws Error(input_unsupported) if a role has the wrong number of channels.
+/// The light as the filter writes it where nothing scatters: without the albedo, but for what --albedo-mix puts in.
+std::vector<float> scattering_light(const LoadedFrame& loaded, Lighting lighting, double albedo_mix);
+
+/// Throws Error(role_missing) if the picture lacks a role that these profiles need. `has_cryptomatte`: ids come from
+/// there.
+void require_roles(const exr::Picture& picture, const exr::Roles& roles, const std::vector<NamedProfile>& profiles,
+                   bool has_cryptomatte = false);
+
+/// The roles that the picture has but for depth; ids only if the profiles tell materials apart, from a Cryptomatte if
+/// there are `mattes`; its manifest may lie in `folder`. Throws Error(input_unsupported) if a role has the wrong number
+/// of channels.
 LoadedFrame load_images(const exr::Picture& picture, const exr::Roles& roles, const std::vector<NamedProfile>& profiles,
-                        const std::vector<std::string>& cryptomatte);
+                        const std::vector<MatteId>& mattes, const std::filesystem::path& folder);
 
 /// The depth of the picture, or that of its positions if it has no other. Throws as load_images.
 std::vector<float> load_depth_image(const exr::Picture& picture, const exr::Roles& roles,
                                     const exr::FoundCamera& camera);
+
+/// What is known of the depth without a camera: that of the picture, or infinite where there is no position, and 1
+/// elsewhere.
+std::vector<float> load_depth_image(const exr::Picture& picture, const exr::Roles& roles);
 
 }  // namespace dermis::program

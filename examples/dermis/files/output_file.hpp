@@ -1,4 +1,4 @@
-/// Files that appear whole or not at all.
+/// The files that arguments name for results.
 #pragma once
 
 #include <filesystem>
@@ -6,11 +6,12 @@
 #include <string_view>
 #include <vector>
 
+#include "exr/temporary_file.hpp"
+
 namespace dermis::program {
 
-/// Throws Error(output) if no file could be written at `path`, before the work that should fill it. `argument` is
-/// named.
-void check_writable(std::string_view argument, const std::filesystem::path& path);
+using exr::check_writable;
+using exr::TemporaryFile;
 
 /// A file that an argument names; "-" is standard output.
 struct NamedFile {
@@ -18,26 +19,13 @@ struct NamedFile {
   std::string path;
 };
 
+/// True if both names lead to one file, by symbolic or hard links or another way of writing it; it need not be there
+/// yet.
+bool is_same_file(const std::string& a, const std::string& b);
+
 /// Looks at the outputs that have a name. Throws Error(usage) if one takes the place of another one or of a file that
 /// is `taken`, and as check_writable.
 void check_outputs(std::vector<NamedFile> taken, const std::vector<NamedFile>& outputs);
-
-/// A name beside `target` to write to. It takes the target's place on commit, else it goes.
-class TemporaryFile {
- public:
-  TemporaryFile(std::string_view argument, std::filesystem::path target);
-  ~TemporaryFile();
-  TemporaryFile(const TemporaryFile&) = delete;
-  TemporaryFile& operator=(const TemporaryFile&) = delete;
-
-  const std::filesystem::path& path() const { return path_; }
-  void commit();
-
- private:
-  std::string argument_;
-  std::filesystem::path target_;
-  std::filesystem::path path_;
-};
 
 /// Writes a text file.
 void write_text(std::string_view argument, const std::filesystem::path& path, std::string_view text);

@@ -8,9 +8,6 @@
 namespace dermis::program {
 namespace {
 
-/// Background is what dermis::Frame says it is.
-bool is_background(float depth) { return !(depth < 1e9F) || !std::isfinite(depth); }
-
 void add_depths(SurfacePixels& surface, std::vector<float>& depths) {
   if (depths.empty()) return;
   const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
@@ -20,6 +17,8 @@ void add_depths(SurfacePixels& surface, std::vector<float>& depths) {
 }
 
 }  // namespace
+
+bool is_background(float depth) { return !(depth < 1e9F) || !std::isfinite(depth); }
 
 MaterialCounts count_materials(std::span<const float> ids, std::span<const float> depth) {
   MaterialCounts counts;

@@ -11,6 +11,9 @@
 
 namespace dermis::program {
 
+/// Background is what dermis::Frame says it is, in front of the camera.
+bool is_background(float depth);
+
 struct SurfacePixels {
   std::int64_t pixels = 0;
   std::optional<double> median_depth_units;  ///< of those that are not background, if there are any

@@ -49,7 +49,7 @@ void draw_figure(std::string_view argument, const std::filesystem::path& path, c
                  const std::string& script) {
   if (path.string().find('\n') != std::string::npos)
     throw Error(ErrorCode::usage, argument, path.string(), "a file name without line ends");
-  TemporaryFile temporary(argument, path);
+  TemporaryFile temporary(path, argument);
   const bool svg = path.extension() != ".png" && path.extension() != ".PNG";
   run_gnuplot(argument, header(temporary.path(), svg, size) + script + "unset output\n");
   temporary.commit();

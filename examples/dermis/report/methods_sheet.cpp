@@ -80,15 +80,15 @@ void draw_methods(std::string_view argument, const std::filesystem::path& path, 
     return 100 * relative_l2(width, height, a, b, where);
   };
   std::deque<TemporaryFile> files;
-  const auto beside = [&] {
-    return files.emplace_back(argument, fmt::format("{}.{}", path.string(), files.size())).path();
+  const auto beside = [&]() -> TemporaryFile& {
+    return files.emplace_back(fmt::format("{}.{}", path.string(), files.size()), argument);
   };
   std::string upper;
   std::string lower;
   for (const MethodPicture& picture : pictures) {
-    const std::filesystem::path beauty = beside();
+    TemporaryFile& beauty = beside();
     write_srgb_png(beauty, width, height, picture.beauty);
-    upper += panel(picture.name, beauty);
+    upper += panel(picture.name, beauty.path());
     if (picture.scattered.empty()) {
       lower += "set multiplot next\n";
       continue;
@@ -98,9 +98,9 @@ void draw_methods(std::string_view argument, const std::filesystem::path& path, 
       numbers.push_back(fmt::format("{:.2f} % off the exact method", percent_off(picture.scattered, exact.scattered)));
     if (has_truth)
       numbers.push_back(fmt::format("{:.1f} % off the path tracer", percent_off(picture.beauty, truth.beauty)));
-    const std::filesystem::path map = beside();
+    TemporaryFile& map = beside();
     write_heatmap_png(map, width, height, error_map(picture.scattered, exact.scattered, where));
-    lower += panel(fmt::format("{}", fmt::join(numbers, ", ")), map);
+    lower += panel(fmt::format("{}", fmt::join(numbers, ", ")), map.path());
   }
   const std::string script = fmt::format(
       "unset tics\nunset border\nunset key\nset size ratio -1\nset margins 0.5,0.5,0.2,1.6\n"

@@ -47,7 +47,7 @@ std::string text_of(const exr::FoundCamera& found) {
 }
 
 json json_of(const exr::Roles& roles) {
-  json result = {{"layer", roles.layer}};
+  json result = {{"layer", roles.layer}, {"view", roles.view}, {"renderer", roles.renderer}};
   for (const exr::RoleInfo& info : exr::role_table) {
     json& entry = result[std::string(info.name)];
     if (roles.has(info.role)) entry = roles[info.role];

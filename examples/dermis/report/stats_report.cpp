@@ -51,6 +51,7 @@ json design_of(const MaterialReport& material) {
 
 json json_of(const MaterialReport& material) {
   return {{"id", material.id ? json(*material.id) : json(nullptr)},
+          {"name", material.name ? json(*material.name) : json(nullptr)},
           {"profile", material.profile},
           {"radius_mm", material.radius_mm},
           {"pixels", material.pixels},
@@ -67,9 +68,11 @@ json times_of(const StatsReport& report) {
 }
 
 std::string text_of(const MaterialReport& material) {
-  std::string text =
-      fmt::format("material {:<2} {}, {} pixels, radius {:.3g} mm\n", material.id ? std::to_string(*material.id) : "",
-                  material.profile, material.pixels, material.radius_mm);
+  std::string text = fmt::format("material {:<2} {}, {} pixels, radius {:.3g} mm\n",
+                                 material.name ? *material.name
+                                 : material.id ? std::to_string(*material.id)
+                                               : "",
+                                 material.profile, material.pixels, material.radius_mm);
   if (!material.taps) return text;
   const auto& [design, count, predicted_rel_l2] = *material.taps;
   text += fmt::format("            {} rank {}, {}{} taps, placement {}", name_of(design.model), design.rank,
@@ -113,6 +116,38 @@ std::string text_of_steps(const StatsReport& report) {
   return text;
 }
 
+json json_of(const StatsReport& report) {
+  const Stats& stats = report.stats;
+  const double tolerance = tolerance_of(report.asked);
+  json object = {{"version", DERMIS_VERSION},
+                 {"device", json_of(report.device)},
+                 {"method", name_of(report.options.method)},
+                 {"quality", report.asked.quality ? json(name_of(*report.asked.quality)) : json(nullptr)},
+                 {"tolerance", tolerance > 0 ? json(tolerance) : json(nullptr)},
+                 {"sheared", report.options.sheared},
+                 {"jitter", report.options.jitter},
+                 {"seed", report.options.seed},
+                 {"disc", disc_of(report.options)},
+                 {"times_ms", times_of(report)},
+                 {"camera", program::json_of(report.camera)},
+                 {"roles", program::json_of(report.roles)},
+                 {"materials", json::array()},
+                 {"notes", report.notes},
+                 {"warnings", report.warnings}};
+  object["tiles"] = {{"total", stats.tiles.kinds.size()}};
+  for (const auto& [kind, name] : word_table<TileKind>) object["tiles"][std::string(name)] = stats.count(kind);
+  object["pixels"] = {{"total", stats.pixels},
+                      {"scattered", stats.pixels_scattered},
+                      {"without_material", stats.pixels_without_material},
+                      {"narrow", stats.pixels_narrow},
+                      {"flat", stats.pixels_flat},
+                      {"narrow_channels", stats.channels_narrow},
+                      {"bad", stats.pixels_bad},
+                      {"unlit", stats.pixels_unlit}};
+  for (const MaterialReport& material : report.materials) object["materials"].push_back(json_of(material));
+  return object;
+}
+
 }  // namespace
 
 std::string text_of(const StatsReport& report) {
@@ -152,33 +187,10 @@ std::string text_of(const StatsReport& report) {
   return text + text_of_steps(report);
 }
 
-std::string json_text_of(const StatsReport& report) {
-  const Stats& stats = report.stats;
-  const double tolerance = tolerance_of(report.asked);
-  json object = {{"version", DERMIS_VERSION},
-                 {"device", json_of(report.device)},
-                 {"method", name_of(report.options.method)},
-                 {"quality", report.asked.quality ? json(name_of(*report.asked.quality)) : json(nullptr)},
-                 {"tolerance", tolerance > 0 ? json(tolerance) : json(nullptr)},
-                 {"sheared", report.options.sheared},
-                 {"jitter", report.options.jitter},
-                 {"seed", report.options.seed},
-                 {"disc", disc_of(report.options)},
-                 {"times_ms", times_of(report)},
-                 {"camera", json_of(report.camera)},
-                 {"roles", json_of(report.roles)},
-                 {"materials", json::array()}};
-  object["tiles"] = {{"total", stats.tiles.kinds.size()}};
-  for (const auto& [kind, name] : word_table<TileKind>) object["tiles"][std::string(name)] = stats.count(kind);
-  object["pixels"] = {{"total", stats.pixels},
-                      {"scattered", stats.pixels_scattered},
-                      {"without_material", stats.pixels_without_material},
-                      {"narrow", stats.pixels_narrow},
-                      {"flat", stats.pixels_flat},
-                      {"narrow_channels", stats.channels_narrow},
-                      {"bad", stats.pixels_bad},
-                      {"unlit", stats.pixels_unlit}};
-  for (const MaterialReport& material : report.materials) object["materials"].push_back(json_of(material));
+std::string json_text_of(const std::vector<StatsReport>& views) {
+  if (views.size() == 1) return json_text(json_of(views.front()));
+  json object = {{"views", json::array()}};
+  for (const StatsReport& view : views) object["views"].push_back(json_of(view));
   return json_text(object);
 }
 

@@ -12,7 +12,8 @@
 namespace dermis::program {
 
 struct MaterialReport {
-  std::optional<int> id;  ///< none: every pixel
+  std::optional<int> id;            ///< none: every pixel
+  std::optional<std::string> name;  ///< in a Cryptomatte
   std::string profile;
   double radius_mm = 0;
   std::int64_t pixels = 0;
@@ -39,9 +40,13 @@ struct StatsReport {
   exr::FoundCamera camera;
   exr::Roles roles;
   std::vector<MaterialReport> materials;
+  std::vector<std::string> notes;     ///< as printed
+  std::vector<std::string> warnings;  ///< as printed
 };
 
 std::string text_of(const StatsReport& report);
-std::string json_text_of(const StatsReport& report);
+
+/// An object for one view, or {"views": [...]} for several.
+std::string json_text_of(const std::vector<StatsReport>& views);
 
 }  // namespace dermis::program

@@ -55,7 +55,7 @@ std::string legend_of(const TileMap& tiles) {
   return text;
 }
 
-void write_tile_map_png(const std::filesystem::path& path, int width, int height, const TileMap& tiles,
+void write_tile_map_png(TemporaryFile& file, int width, int height, const TileMap& tiles,
                         std::span<const float> light) {
   constexpr float darkest = 0.15F;
   std::vector<float> rgb;
@@ -69,7 +69,7 @@ void write_tile_map_png(const std::filesystem::path& path, int width, int height
       for (const float channel : look_of(tiles.kinds[tile]).rgb) rgb.push_back(shade * channel);
     }
   }
-  write_srgb_png(path, width, height, rgb);
+  write_srgb_png(file, width, height, rgb);
 }
 
 }  // namespace dermis::program

@@ -1,12 +1,12 @@
 /// A picture that shows what became of the tiles of a frame.
 #pragma once
 
-#include <filesystem>
 #include <span>
 #include <string>
 #include <string_view>
 
 #include "dermis/plan.hpp"
+#include "files/output_file.hpp"
 
 namespace dermis::program {
 
@@ -18,7 +18,6 @@ std::string legend_of(const TileMap& tiles);
 
 /// Draws every tile in the colour of its kind, over the light of the frame, packed scene-linear RGB, from dim where it
 /// is dark to full. Throws Error(output).
-void write_tile_map_png(const std::filesystem::path& path, int width, int height, const TileMap& tiles,
-                        std::span<const float> light);
+void write_tile_map_png(TemporaryFile& file, int width, int height, const TileMap& tiles, std::span<const float> light);
 
 }  // namespace dermis::program

@@ -1,0 +1,66 @@
+#include "report/messages.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <exception>
+#include <new>
+#include <utility>
+
+namespace dermis::program {
+namespace {
+
+/// Names of files and channels come from outside: nothing in them may break the line or steer the terminal.
+std::string one_line(std::string_view message) {
+  std::string line(message);
+  std::replace_if(
+      line.begin(), line.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, ' ');
+  return line;
+}
+
+void print_line(std::string_view kind, std::string_view message) {
+  std::fflush(stdout);
+  fmt::print(stderr, "dermis: {}: {}\n", kind, one_line(message));
+}
+
+int report(ErrorCode code, std::string_view file, std::string_view message) {
+  const bool is_named = file.empty() || message.starts_with(file);
+  print_error(is_named ? std::string(message) : fmt::format("{}: {}", file, message));
+  return static_cast<int>(code);
+}
+
+}  // namespace
+
+void Messages::begin(std::string file) {
+  file_ = std::move(file);
+  notes_.clear();
+  warnings_.clear();
+}
+
+void Messages::note(std::string text) {
+  if (said_.insert(text).second && !arguments_.quiet) print_line("note", text);
+  notes_.push_back(std::move(text));
+}
+
+void Messages::warn(ErrorCode code, std::string_view subject, std::string_view text) {
+  if (arguments_.strict) throw Error(code, fmt::format("{}: {}", file_, subject), text, "no warning, with --strict");
+  warnings_.push_back(fmt::format("{}: {}", subject, text));
+  print_line("warning", fmt::format("{}: {}", file_, warnings_.back()));
+}
+
+void print_error(std::string_view message) { print_line("error", message); }
+
+int report_exception(std::string_view file) {
+  try {
+    throw;
+  } catch (const Error& error) {
+    return report(error.code(), file, error.what());
+  } catch (const std::bad_alloc&) {
+    return report(ErrorCode::device, file, "memory: got no more from the system, want enough for the picture");
+  } catch (const std::exception& error) {
+    return report(ErrorCode::device, file, error.what());
+  }
+}
+
+}  // namespace dermis::program
