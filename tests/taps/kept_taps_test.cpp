@@ -228,6 +228,8 @@ TEST_CASE("kept taps whose checksum is right, but which say nonsense, are fitted
     CHECK(is_fitted_again(terms, begin + 8 + 12));
   }
   CHECK(is_fitted_again('\2', begin + 8 + 12 + 8 + 12));  // whether the first term is normalised
+  write_with_checksum(poisoned.file, whole + '\0');
+  CHECK_FALSE(poisoned.is_read());
   // Anything anywhere: nothing crashes, reads beyond the end, or asks for more memory than there is.
   for (int i = 0; i < 200; ++i) {
     std::string damaged = whole;
@@ -308,10 +310,15 @@ TEST_CASE("kept files take no more room than is theirs, and the longest unused g
   const KeptFiles files(name);
   write_bytes(name + "/notes", std::string(100, 'n'));
   const std::string content(std::size_t{7} << 20, 'x');
+  // The one that is read is the older one.
+  const auto now = fs::file_time_type::clock::now();
   files.put("used", content);
+  for (const fs::path& file : files_in(name)) fs::last_write_time(file, now - std::chrono::hours(2));
   files.put("unused", content);
-  const auto long_ago = fs::file_time_type::clock::now() - std::chrono::hours(1);
-  for (const fs::path& file : files_in(name)) fs::last_write_time(file, long_ago);
+  for (const fs::path& file : files_in(name)) {
+    if (fs::last_write_time(file) > now - std::chrono::minutes(1))
+      fs::last_write_time(file, now - std::chrono::hours(1));
+  }
   REQUIRE(files.get("used").has_value());
   for (int i = 0; i < 8; ++i) files.put("other " + std::to_string(i), content);
   std::uintmax_t sum = 0;

@@ -10,12 +10,16 @@
 namespace dermis::program {
 namespace {
 
-void add_usual_arguments(CLI::App& app, FilterArguments& arguments) {
-  const HelpGroup group(app, "Usual options");
-  add_input_and_output(app, arguments.output);
+void add_surface_arguments(CLI::App& app, FilterArguments& arguments) {
   add_scale_argument(app, arguments.surface.picture);
   add_material_arguments(app, arguments.surface.materials);
   add_quality_argument(app, arguments.quality);
+}
+
+void add_usual_arguments(CLI::App& app, FilterArguments& arguments) {
+  const HelpGroup group(app, "Usual options");
+  add_input_and_output(app, arguments.output);
+  add_surface_arguments(app, arguments);
   app.add_option("--preview", arguments.output.files.preview, "also write the filtered beauty as sRGB")
       ->check(folder_or_file_ending({".png"}))
       ->type_name("FILE.png");
@@ -88,13 +92,8 @@ void add_taps_arguments(CLI::App& app, FilterArguments& arguments) {
       ->capture_default_str();
 }
 
-}  // namespace
-
-void add_filter_arguments(CLI::App& app, FilterArguments& arguments) {
-  add_usual_arguments(app, arguments);
-  add_reading_groups(app, arguments.surface);
-  add_light_arguments(app, arguments);
-  add_result_arguments(app, arguments);
+/// How light is scattered, and on what.
+void add_scatter_arguments(CLI::App& app, FilterArguments& arguments) {
   add_method_arguments(app, arguments);
   add_taps_arguments(app, arguments);
   {
@@ -108,6 +107,26 @@ void add_filter_arguments(CLI::App& app, FilterArguments& arguments) {
   const HelpGroup group(app, "Device");
   add_device_arguments(app, arguments.device);
   add_cache_argument(app, arguments.cache_dir);
+}
+
+}  // namespace
+
+void add_filter_arguments(CLI::App& app, FilterArguments& arguments) {
+  add_usual_arguments(app, arguments);
+  add_reading_groups(app, arguments.surface);
+  add_light_arguments(app, arguments);
+  add_result_arguments(app, arguments);
+  add_scatter_arguments(app, arguments);
+}
+
+void add_job_arguments(CLI::App& app, FilterArguments& arguments) {
+  {
+    const HelpGroup group(app, "Usual options");
+    add_surface_arguments(app, arguments);
+  }
+  add_reading_groups(app, arguments.surface);
+  add_light_arguments(app, arguments);
+  add_scatter_arguments(app, arguments);
 }
 
 }  // namespace dermis::program

@@ -47,6 +47,9 @@ struct FilterArguments {
 
 void add_filter_arguments(CLI::App& app, FilterArguments& arguments);
 
+/// The same without what is read and written, and without --reuse.
+void add_job_arguments(CLI::App& app, FilterArguments& arguments);
+
 }  // namespace dermis::program
 
 template <>

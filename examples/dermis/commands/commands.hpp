@@ -17,6 +17,7 @@ Command add_texture(CLI::App& parent);
 Command add_compare_methods(CLI::App& parent);
 Command add_light(CLI::App& parent);
 Command add_info(CLI::App& parent);
+Command add_warm(CLI::App& parent);
 Command add_devices(CLI::App& parent);
 Command add_profiles(CLI::App& parent);
 Command add_taps(CLI::App& parent);

@@ -84,7 +84,7 @@ template <class Value, class Make, class IsSound>
 Value kept(const std::string& folder, const std::string& key, const IsSound& is_sound, const Make& make) {
   const KeptFiles files(folder);
   if (const std::optional<std::string> bytes = files.get(key)) {
-    Value value;
+    Value value{};
     Unpacked unpacked(*bytes);
     unpacked(value);
     if (unpacked.complete() && is_sound(value)) return value;
