@@ -65,6 +65,7 @@ class HeaderCheck {
     }
     box("displayWindow");
     check_channels();
+    check_pixel_aspect();
     const std::uint64_t chunks = chunk_count(box("dataWindow"));
     if (file_bytes / smallest_chunk_bytes < chunks) {
       refuse(path_, std::to_string(file_bytes) + " bytes for " + std::to_string(chunks) + " blocks of pixels",
@@ -117,6 +118,15 @@ class HeaderCheck {
     if (list.size() != 1) damaged(path_, "channels");
     if (names.empty() || names.size() > static_cast<std::size_t>(max_channels)) {
       refuse(path_, std::to_string(names.size()) + " channels", "1 to " + std::to_string(max_channels));
+    }
+  }
+
+  void check_pixel_aspect() const {
+    const HeaderAttribute* attribute = find("pixelAspectRatio");
+    if (attribute == nullptr || attribute->type != "float" || attribute->value.size() < 4) return;
+    const auto ratio = std::bit_cast<float>(little_endian(attribute->value));
+    if (!(ratio >= 1e-6F && ratio <= 1e6F)) {  // what OpenEXR reads
+      refuse(path_, "a pixelAspectRatio of " + std::to_string(ratio), "a pixelAspectRatio from 1e-6 to 1e6");
     }
   }
 

@@ -214,7 +214,7 @@ void finish_beauty(const FilterJob& job, Compose compose, const BeautyParts& par
 
 /// The result, and what is to be seen beside it: none takes its place before all are written.
 void write_pictures(const FilterJob& job, const OutputFiles& files, const ResultChannels& channels, SurfaceInput& input,
-                    const TileMap* tiles) {
+                    const TileMap& tiles) {
   exr::Picture& picture = input.picture;
   picture.set_attribute("dermis:version", DERMIS_VERSION);
   picture.set_attribute("dermis:command", job.command);
@@ -225,9 +225,9 @@ void write_pictures(const FilterJob& job, const OutputFiles& files, const Result
     write_srgb_png(*preview, picture.width(), picture.height(), exr::load(picture, input.roles, Role::beauty));
   }
   std::optional<TemporaryFile> tile_map;
-  if (!files.tile_map.empty() && tiles != nullptr) {
+  if (!files.tile_map.empty()) {
     tile_map.emplace(files.tile_map, "--tile-map");
-    write_tile_map_png(*tile_map, picture.width(), picture.height(), *tiles, input.loaded.light);
+    write_tile_map_png(*tile_map, picture.width(), picture.height(), tiles, input.loaded.light);
   }
   picture.write(files.output, job.compression, channels.written);
   if (preview) preview->commit();
@@ -259,8 +259,10 @@ void copy_picture(const FilterJob& job, const PictureFiles& files, SurfaceInput&
   check_compression(job.compression, input.picture, input.roles, channels.written);
   input.picture.add_channels(channels.scattered, Format::f32);
   input.picture.store(channels.scattered, scattering_light(input.loaded, job.options));
-  write_pictures(job, files.outputs, channels, input, nullptr);
   Stats stats;
+  stats.tiles = {input.picture.width(), input.picture.height(), 1, 1, {TileKind::without_material}};
+  write_pictures(job, files.outputs, channels, input, stats.tiles);
+  if (!files.outputs.tile_map.empty()) fmt::print("{}", legend_of(stats.tiles));
   stats.pixels = stats.pixels_without_material =
       std::int64_t{input.picture.width()} * std::int64_t{input.picture.height()};
   write_stats(job, files.outputs,
@@ -330,7 +332,7 @@ Outcome filter_picture(const FilterJob& job, const PictureFiles& files, FilterSe
   times.run_ms = step.lap_ms();
 
   if (has_beauty) finish_beauty(job, compose, parts, channels, input, beauty, messages);
-  write_pictures(job, files.outputs, channels, input, &stats.tiles);
+  write_pictures(job, files.outputs, channels, input, stats.tiles);
   times.write_ms = step.lap_ms();
   times.total_ms = whole.lap_ms();
   if (!files.outputs.tile_map.empty()) fmt::print("{}", legend_of(stats.tiles));
