@@ -75,6 +75,7 @@ class HeaderCheck {
     }
     box("displayWindow");
     const std::size_t channels = count_channels();
+    check_pixel_aspect();
     return {chunk_count(box("dataWindow")), channels};
   }
 
@@ -123,6 +124,15 @@ class HeaderCheck {
     if (list.size() != 1) damaged(path_, "channels");
     check_channel_count(path_, names.size());
     return names.size();
+  }
+
+  void check_pixel_aspect() const {
+    const HeaderAttribute* attribute = find("pixelAspectRatio");
+    if (attribute == nullptr || attribute->type != "float" || attribute->value.size() < 4) return;
+    const auto ratio = std::bit_cast<float>(little_endian(attribute->value));
+    if (!(ratio >= 1e-6F && ratio <= 1e6F)) {  // what OpenEXR reads
+      refuse(path_, "a pixelAspectRatio of " + std::to_string(ratio), "a pixelAspectRatio from 1e-6 to 1e6");
+    }
   }
 
   void check_channel(std::string_view name, std::string_view facts) const {

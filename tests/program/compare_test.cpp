@@ -1,7 +1,10 @@
 // dermis compare: what it prints and how it exits.
 #include <OpenImageIO/imageio.h>
 
+#include <cstddef>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "dermis/exr.hpp"
@@ -105,11 +108,48 @@ TEST_CASE("channels that one picture lacks are named; none in common is an error
                 {"no channel that both have"});
 }
 
-TEST_CASE("pictures of different size cannot be compared") {
+TEST_CASE("pictures are compared by place, and other windows are said") {
   const Pair pair(24);
-  const std::string wide = pair.folder / "wide.exr";
-  make_scene(wide, "step", pair.width + 1, pair.height, 4);
-  check_refused(run_program({"compare", wide, pair.b}), 4, {std::to_string(pair.width + 1), "as B"});
+  Random random(26);
+  const Picture whole = Picture::read(pair.b);
+  // a crop of b that holds the place where a is off
+  const int left = random.integer(0, pair.x);
+  const int top = random.integer(0, pair.y);
+  const dermis::exr::Window window{left, top, random.integer(pair.x + 1, pair.width) - left,
+                                   random.integer(pair.y + 1, pair.height) - top};
+  Picture crop(window, whole.display_window());
+  for (const auto& channel : whole.channels()) {
+    crop.add_channels(std::span(&channel.name, 1), channel.format);
+    const std::vector<float> plane = whole.plane(channel.name);
+    std::vector<float> part;
+    for (int y = 0; y < window.height; ++y)
+      for (int x = 0; x < window.width; ++x)
+        part.push_back(plane[static_cast<std::size_t>((top + y) * pair.width + left + x)]);
+    crop.store(std::span(&channel.name, 1), part);
+  }
+  const std::string path = pair.folder / "crop.exr";
+  crop.write(path);
+  const bool is_whole = window == whole.data_window();
+  const Outcome same = run_program({"compare", path, pair.b, "--max-rel-l2", "0"});
+  INFO(same.output << same.errors);
+  CHECK(same.exit_code == 0);
+  CHECK(has(same.output, "windows: A ") == !is_whole);
+  CHECK(run_program({"compare", path, pair.b, "--identical"}).exit_code == (is_whole ? 0 : 1));
+  for (const auto& [first, second] : {std::pair(path, pair.a), std::pair(pair.a, path)}) {
+    const Outcome other = run_program({"compare", first, second, "--max-rel-l2", "1e-6"});
+    CHECK(other.exit_code == 1);
+    CHECK(has(other.output, "at (" + std::to_string(pair.x) + ", " + std::to_string(pair.y) + ") ViewLayer.DiffCol.G"));
+  }
+}
+
+TEST_CASE("pictures that have no pixel in common cannot be compared") {
+  const Pair pair(27);
+  Picture beside({pair.width, 0, 3, 3}, {0, 0, pair.width, pair.height});
+  const std::string name = "ViewLayer.DiffCol.G";
+  beside.add_channels(std::span(&name, 1), dermis::Format::f32);
+  beside.write(pair.folder / "beside.exr");
+  check_refused(run_program({"compare", pair.folder / "beside.exr", pair.b}), 4,
+                {"A: got 3 x 3 pixels at (", "overlaps"});
 }
 
 TEST_CASE("the heat map is brightest where the difference is") {

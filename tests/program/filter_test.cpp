@@ -178,6 +178,7 @@ TEST_CASE("the same call gives the same bits: again, in place, and on any number
   run_well(filter_arguments(scene, folder / "other.exr", other_seed));
   CHECK_FALSE(is_identical(first, folder / "other.exr"));
 
+  options.push_back("--in-place");
   run_well(filter_arguments(scene, scene.path, options));
   CHECK(is_identical(first, scene.path));
   for (const auto& file : fs::directory_iterator(folder.path()))
@@ -450,7 +451,7 @@ TEST_CASE("a material that no pixel has is a warning") {
   const Outcome outcome =
       run_program(filter_arguments(scene, folder / "out.exr", {"--material", "1=skin", "--material", "77=wax"}));
   CHECK(outcome.exit_code == 0);
-  CHECK(outcome.errors == "dermis: warning: --material 77: no pixel has this id\n");
+  CHECK(outcome.errors == "dermis: warning: " + scene.path + ": --material 77: no pixel has this id\n");
 }
 
 TEST_CASE("light that is not a number stays where it is, with a warning") {
@@ -461,7 +462,7 @@ TEST_CASE("light that is not a number stays where it is, with a warning") {
   PictureCopy(scene.path).with("ViewLayer.DiffDir.G", light).write(scene.path);
   const Outcome outcome = run_program(filter_arguments(scene, folder / "out.exr", both_materials));
   CHECK(outcome.exit_code == 0);
-  CHECK(outcome.errors.find("warning: 1 pixels") != std::string::npos);
+  CHECK(outcome.errors.find("light and albedo: 1 pixels are not finite") != std::string::npos);
   const Picture out = Picture::read(folder / "out.exr");
   const std::vector<float> green = out.plane("ViewLayer.Combined.G");
   CHECK(std::all_of(green.begin(), green.end(), [](float value) { return std::isfinite(value); }));
@@ -484,7 +485,7 @@ TEST_CASE("pixels that are not finite are kept, made black, or an error") {
     INFO(what);
     const Outcome outcome = run_program(call(what));
     CHECK(outcome.exit_code == 0);
-    CHECK(outcome.errors == "dermis: warning: 1 pixels have light or albedo that is not finite; they " +
+    CHECK(outcome.errors == "dermis: warning: " + scene.path + ": light and albedo: 1 pixels are not finite; they " +
                                 std::string(what == "keep" ? "stay as they are" : "are black now") + "\n");
   }
   const Picture keep = Picture::read(folder / "keep.exr");

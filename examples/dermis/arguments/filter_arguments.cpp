@@ -50,7 +50,8 @@ void add_result_arguments(CLI::App& app, FilterArguments& arguments) {
   add_word(
       app, "--compose", arguments.compose,
       "difference: the beauty gains what its diffuse light has gained; sum: it is the scattered light and the other "
-      "passes added up, where it scatters; auto: the sum if noise is in the passes that is not in the beauty");
+      "passes added up, where it scatters; beauty: the diffuse light is what the other passes leave of the beauty; "
+      "auto: what brings no noise into it");
   app.add_flag("--keep-formats", arguments.keeps_formats,
                "half channels stay half, with 65504 for what is above; else the beauty becomes float");
   app.add_flag("--allow-empty", arguments.may_be_empty,

@@ -36,14 +36,21 @@ struct CompareArguments {
   std::string heatmap;
 };
 
-void check_sizes(const exr::Picture& a, const exr::Picture& b) {
-  if (a.width() != b.width() || a.height() != b.height())
-    throw Error(ErrorCode::input_unsupported, "A", fmt::format("{} x {} pixels", a.width(), a.height()),
-                fmt::format("{} x {} as B", b.width(), b.height()));
+std::string text_of(const exr::Window& window) {
+  return fmt::format("{} x {} pixels at ({}, {})", window.width, window.height, window.x, window.y);
+}
+
+/// The pixels that both have, by their place on the display; said if they are not all there are.
+exr::Window overlap_of(const exr::Window& a, const exr::Window& b) {
+  const exr::Window both = common_window(a, b);
+  if (both.width < 1 || both.height < 1)
+    throw Error(ErrorCode::input_unsupported, "A", text_of(a), "a window that overlaps that of B, " + text_of(b));
+  if (!(a == b)) fmt::print("windows: A {}, B {}; compared: {}\n", text_of(a), text_of(b), text_of(both));
+  return both;
 }
 
 /// NAME=VALUE: 1 where the channel of `b` has the value.
-oracle::Picture read_mask(const std::string& text, const exr::Picture& b) {
+oracle::Picture read_mask(const std::string& text, const exr::Picture& b, const exr::Window& window) {
   const std::size_t equals = text.rfind('=');
   const auto value = equals == std::string::npos ? std::nullopt : parse_real(std::string_view(text).substr(equals + 1));
   if (!value) throw Error(ErrorCode::usage, "--mask-channel", text, "CHANNEL=VALUE, as ViewLayer.IndexMA.X=1");
@@ -51,10 +58,8 @@ oracle::Picture read_mask(const std::string& text, const exr::Picture& b) {
   if (b.find(name) == nullptr)
     throw Error(ErrorCode::role_missing, "--mask-channel", name + ", which B does not have",
                 "the full name of a channel");
-  const std::vector<float> plane = b.plane(name);
-  oracle::Picture mask(b.width(), b.height(), 1);
-  std::transform(plane.begin(), plane.end(), mask.values.begin(),
-                 [&](float found) { return static_cast<double>(found) == *value ? 1.0 : 0.0; });
+  oracle::Picture mask = values_of(b, {"", {name}}, window);
+  for (double& found : mask.values) found = found == *value ? 1 : 0;
   if (std::count(mask.values.begin(), mask.values.end(), 1.0) == 0)
     throw Error(ErrorCode::usage, "--mask-channel", text + ", which no pixel has", "a value that occurs");
   return mask;
@@ -64,11 +69,12 @@ void print_missing(std::string_view picture, const std::vector<std::string>& cha
   if (!channels.empty()) fmt::print("only in {}: {}\n", picture, fmt::join(channels, " "));
 }
 
-void print_difference(const ChannelGroup& group, const oracle::Difference& difference) {
+void print_difference(const ChannelGroup& group, const oracle::Difference& difference, const exr::Window& window) {
   const std::string& channel = group.channels[static_cast<std::size_t>(difference.max_channel)];
   fmt::print("{:<24} rel_l2 {:<11.4g} rmse {:<11.4g} psnr {:<7.2f} max {:<11.4g} at ({}, {}) {}: {:.9g} and {:.9g}\n",
              group.name.empty() ? "-" : group.name, difference.relative_l2, difference.rmse, difference.psnr_db,
-             difference.max, difference.max_x, difference.max_y, channel, difference.max_a, difference.max_b);
+             difference.max, window.x + difference.max_x, window.y + difference.max_y, channel, difference.max_a,
+             difference.max_b);
 }
 
 /// Values that are not finite in both and equal in kind count as equal, as in oracle::compare.
@@ -111,13 +117,14 @@ class HeatMap {
   std::vector<float> values_;
 };
 
-/// True if the channels are the same to the bit.
+/// True if the channels are the same to the bit, and there are as many pixels.
 bool print_different_bits(const exr::Picture& a, const exr::Picture& b, const SharedChannels& shared,
-                          const std::optional<oracle::Picture>& mask) {
-  bool identical = true;
+                          const exr::Window& window, const std::optional<oracle::Picture>& mask) {
+  bool identical = a.data_window() == b.data_window();
+  if (!identical) fmt::print("not identical: data windows\n");
   for (const ChannelGroup& group : shared.groups) {
     for (const std::string& channel : group.channels) {
-      const std::int64_t different = count_different_bits(a, b, channel, mask);
+      const std::int64_t different = count_different_bits(a, b, channel, window, mask);
       if (different > 0) fmt::print("not identical: {}, {} values\n", channel, different);
       identical = identical && different == 0;
     }
@@ -130,30 +137,30 @@ int run_compare(const CompareArguments& arguments) {
   if (!arguments.heatmap.empty()) check_writable("--heatmap", arguments.heatmap);
   const exr::Picture a = exr::Picture::read(arguments.a);
   const exr::Picture b = exr::Picture::read(arguments.b);
-  check_sizes(a, b);
   const SharedChannels shared = share_channels(a, b, arguments.channels);
   if (shared.groups.empty())
     throw Error(
         ErrorCode::input_unsupported, "A and B",
         "no channel that both have" + (arguments.channels.empty() ? "" : " and that starts with " + arguments.channels),
         "one at least");
+  const exr::Window window = overlap_of(a.data_window(), b.data_window());
   std::optional<oracle::Picture> mask;
-  if (!arguments.mask_channel.empty()) mask = read_mask(arguments.mask_channel, b);
+  if (!arguments.mask_channel.empty()) mask = read_mask(arguments.mask_channel, b, window);
 
   print_missing("A", shared.only_a);
   print_missing("B", shared.only_b);
-  HeatMap heatmap(a.width(), a.height());
+  HeatMap heatmap(window.width, window.height);
   bool close = true;
   for (const ChannelGroup& group : shared.groups) {
-    const oracle::Picture values_a = values_of(a, group);
-    const oracle::Picture values_b = values_of(b, group);
+    const oracle::Picture values_a = values_of(a, group, window);
+    const oracle::Picture values_b = values_of(b, group, window);
     const oracle::Difference difference =
         mask ? oracle::compare(values_a, values_b, *mask) : oracle::compare(values_a, values_b);
-    print_difference(group, difference);
+    print_difference(group, difference, window);
     if (arguments.max_rel_l2 && !(difference.relative_l2 <= *arguments.max_rel_l2)) close = false;
     if (!arguments.heatmap.empty()) heatmap.add(values_a, values_b, mask);
   }
-  if (arguments.identical && !print_different_bits(a, b, shared, mask)) close = false;
+  if (arguments.identical && !print_different_bits(a, b, shared, window, mask)) close = false;
   if (!arguments.heatmap.empty()) heatmap.write(arguments.heatmap);
   return close ? 0 : differs;
 }

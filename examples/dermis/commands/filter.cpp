@@ -160,27 +160,26 @@ std::string percent(double share) { return fmt::format("{:.2g} %", 100 * share);
 
 /// How the beauty is to be put together, said where it matters.
 Compose choose_compose(Compose asked, const PassFit& fit, const std::string& beauty, Messages& messages) {
-  const std::string numbers = fmt::format(
-      "the passes are {} off it per pixel and {} on the whole, and the diffuse light of {} of {} pixels is "
-      "brighter than it",
-      percent(fit.off), percent(std::abs(fit.missing)), fit.too_bright, fit.pixels);
-  const Compose chosen = asked == Compose::automatic ? choose_composition(fit) : asked;
-  if (chosen == Compose::sum && asked == Compose::automatic) {
+  const Compose right = choose_composition(fit);
+  const Compose chosen = asked == Compose::automatic ? right : asked;
+  const bool is_noisy = right != Compose::automatic;
+  const bool needs_passes = chosen == Compose::sum || chosen == Compose::beauty;
+  std::string what;
+  if (asked == Compose::automatic && chosen == Compose::beauty)
+    what = "noise is in them that it has not: the light is what the other passes leave of it (--compose beauty)";
+  else if (asked == Compose::automatic && chosen == Compose::sum)
+    what = "it has noise that they have not: it is their sum where it scatters (--compose sum)";
+  else if (needs_passes && !fit.adds_up() && !fit.is_complete())
+    what = "what is in none of them is lost or scattered; want --compose difference";
+  else if (chosen == Compose::automatic && fit.too_bright > 0)
+    what = "they are not of one render; where it is brighter the light is what it has";
+  else if (chosen == Compose::difference && (fit.too_bright > 0 || is_noisy))
+    what = "they are not of one render, and their noise comes into it; want --compose auto";
+  if (!what.empty())
     messages.warn(ErrorCode::input_unsupported, beauty,
-                  numbers +
-                      ": they have noise that it has not, so it is their sum where it scatters; --compose "
-                      "difference keeps what is in no pass");
-  } else if (chosen == Compose::sum && !fit.adds_up() && !fit.is_complete()) {
-    messages.warn(ErrorCode::input_unsupported, beauty,
-                  numbers + ": the sum of the passes lacks what is in none of them; want --compose difference");
-  } else if (chosen == Compose::sum) {
-    messages.note(fmt::format("{}: {}; it is their sum where it scatters", beauty, numbers));
-  } else if (fit.too_bright > 0 || (asked == Compose::difference && choose_composition(fit) == Compose::sum)) {
-    messages.warn(ErrorCode::input_unsupported, beauty,
-                  numbers +
-                      ": noise of passes that are not of this beauty comes into it; want passes of one render, "
-                      "or --compose sum");
-  }
+                  fmt::format("the passes are {} off it per pixel and {} on the whole, and their diffuse light is "
+                              "brighter than it in {} of {} pixels: {}",
+                              percent(fit.off), percent(std::abs(fit.missing)), fit.too_bright, fit.pixels, what));
   return chosen;
 }
 
@@ -240,6 +239,7 @@ ViewResult copy_view(const FilterJob& job, SurfaceInput& input, FilterSession& s
   input.picture.store(result.channels.scattered,
                       scattering_light(input.loaded, input.lighting, job.options.albedo_mix));
   Stats stats;
+  stats.tiles = {input.picture.width(), input.picture.height(), 1, 1, {TileKind::without_material}};
   stats.pixels = stats.pixels_without_material =
       std::int64_t{input.picture.width()} * std::int64_t{input.picture.height()};
   result.report = {
@@ -253,6 +253,7 @@ ViewResult copy_view(const FilterJob& job, SurfaceInput& input, FilterSession& s
       .materials = report_materials(job, std::vector<MaterialPixels>(job.surface.profiles.size()), nullptr),
       .notes = {},
       .warnings = {}};
+  result.light = std::move(input.loaded.light);
   return result;
 }
 
@@ -280,11 +281,13 @@ ViewResult filter_view(const FilterJob& job, const PictureFiles& files, SurfaceI
   const BeautyParts parts{before, input.loaded.light, input.loaded.albedo,   input.loaded.matte,
                           other,  input.lighting,     job.options.albedo_mix};
   Compose compose = Compose::difference;
-  if (has_beauty)
-    compose = choose_compose(
-        job.compose,
-        measure_passes(parts, input.picture.width(), scattering_pixels(input.loaded, job.surface.profiles)),
-        pass_of(channels.beauty), messages);
+  if (has_beauty) {
+    const std::vector<std::uint8_t> scatters = scattering_pixels(input.loaded, job.surface.profiles);
+    const PassFit fit = measure_passes(parts, input.picture.width(), scatters);
+    compose = choose_compose(job.compose, fit, pass_of(channels.beauty), messages);
+    if (compose == Compose::beauty || (compose == Compose::automatic && fit.too_bright > 0))
+      take_light_from_beauty(parts, scatters, compose == Compose::beauty, input.loaded.light);
+  }
 
   const Device& device = session.device();
   const Plan* plan = nullptr;
@@ -341,7 +344,7 @@ void write_pictures(const FilterJob& job, const OutputFiles& files, const std::v
     write_srgb_png(*preview, picture.width(), picture.height(), exr::load(picture, shown.report.roles, Role::beauty));
   }
   std::optional<TemporaryFile> tile_map;
-  if (!files.tile_map.empty() && shown.outcome == Outcome::filtered) {
+  if (!files.tile_map.empty()) {
     tile_map.emplace(files.tile_map, "--tile-map");
     write_tile_map_png(*tile_map, picture.width(), picture.height(), shown.report.stats.tiles, shown.light);
   }
@@ -372,9 +375,10 @@ Outcome filter_picture(const FilterJob& job, const PictureFiles& files, FilterSe
     results.push_back(filter_view(job, files, input, session, step, messages));
   }
   write_pictures(job, files.outputs, results, picture);
+  const double write_ms = step.lap_ms();
   std::vector<StatsReport> reports;
   for (ViewResult& result : results) {
-    result.report.times.write_ms = step.lap_ms();
+    result.report.times.write_ms = write_ms;
     result.report.times.total_ms = whole.lap_ms();
     result.report.notes = messages.notes();
     result.report.warnings = messages.warnings();

@@ -84,8 +84,16 @@ void end_by_signal(int number) {
   raise(number);  // whose handler was reset to that of the system
 }
 
-/// A signal that ends the process leaves no temporary files; one that is ignored, as by nohup, stays so. A limit on the
-/// size of files makes writing fail.
+int parse_and_run_safely(int argc, char** argv) {
+  try {
+    return parse_and_run(argc, argv);
+  } catch (...) {
+    return report_exception();
+  }
+}
+
+}  // namespace
+
 void handle_signals() {
   for (const int number : {SIGHUP, SIGINT, SIGTERM}) {
     struct sigaction before = {};
@@ -98,16 +106,6 @@ void handle_signals() {
   }
   std::signal(SIGXFSZ, SIG_IGN);
 }
-
-int parse_and_run_safely(int argc, char** argv) {
-  try {
-    return parse_and_run(argc, argv);
-  } catch (...) {
-    return report_exception();
-  }
-}
-
-}  // namespace
 
 int run(int argc, char** argv) {
   // PoCL would otherwise hide integer divisions by zero of the host program. It reads this at the first OpenCL call.

@@ -98,7 +98,7 @@ void require_scattering(const SurfaceInput& input, const SurfaceRequest& request
               wanted.empty() ? "a picture of background only"
                              : fmt::format("{}, and no pixel of it that scatters; the ids in the picture are {}",
                                            fmt::join(wanted, ", "), fmt::join(seen, ", ")),
-              "something that scatters");
+              "something that scatters, or --allow-empty");
 }
 
 void transmit_light(const Device& device, const SurfaceRequest& request, const Frame& frame, SurfaceInput& input) {

@@ -1,6 +1,7 @@
 #include "files/beauty_composition.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 
@@ -55,6 +56,10 @@ PassFit measure_passes(const BeautyParts& parts, int width, const std::vector<st
   std::vector<Lack> blocks(columns * ((rows + block - 1) / block));
   Lack all;
   PassFit fit;
+  double beauty_roughness = 0;
+  double sum_roughness = 0;
+  std::array<double, 2> before{};  // beauty and sum of passes of the last pixel that scatters
+  std::size_t last = scatters.size();
   for (std::size_t pixel = 0; pixel < scatters.size(); ++pixel) {
     if (scatters[pixel] == 0) continue;
     double its_beauty = 0;
@@ -72,6 +77,13 @@ PassFit measure_passes(const BeautyParts& parts, int width, const std::vector<st
       its_distance += std::abs(lack);
     }
     if (!std::isfinite(its_beauty + its_lack)) continue;
+    const double its_sum = its_beauty - its_lack;
+    if (last + 1 == pixel && pixel % static_cast<std::size_t>(width) != 0) {
+      beauty_roughness += std::abs(its_beauty - before[0]);
+      sum_roughness += std::abs(its_sum - before[1]);
+    }
+    before = {its_beauty, its_sum};
+    last = pixel;
     ++fit.pixels;
     fit.too_bright += its_too_bright ? 1 : 0;
     all.add(its_beauty, its_lack, its_distance);
@@ -79,6 +91,7 @@ PassFit measure_passes(const BeautyParts& parts, int width, const std::vector<st
         .add(its_beauty, its_lack, its_distance);
   }
   if (all.beauty <= 0) return fit;
+  fit.beauty_is_smoother = beauty_roughness <= sum_roughness;
   fit.off = all.distance / all.beauty;
   fit.missing = all.lack / all.beauty;
   fit.missing_error = all.deviation() / all.beauty;
@@ -88,7 +101,28 @@ PassFit measure_passes(const BeautyParts& parts, int width, const std::vector<st
 }
 
 Compose choose_composition(const PassFit& fit) {
-  return !fit.adds_up() && fit.is_complete() ? Compose::sum : Compose::difference;
+  if (fit.adds_up() || !fit.is_complete()) return Compose::automatic;
+  return fit.beauty_is_smoother ? Compose::beauty : Compose::sum;
+}
+
+void take_light_from_beauty(const BeautyParts& parts, const std::vector<std::uint8_t>& scatters, bool everywhere,
+                            std::vector<float>& light) {
+  constexpr float smallest_albedo = 1e-4F;  // as Lighting::lit says
+  const bool has_albedo = parts.lighting == Lighting::raw && !parts.albedo.empty();
+  for (std::size_t pixel = 0; pixel < scatters.size(); ++pixel) {
+    if (scatters[pixel] == 0) continue;
+    const std::size_t first = 3 * pixel;
+    bool is_taken = everywhere;
+    for (std::size_t i = first; i < first + 3; ++i)
+      is_taken = is_taken || is_too_bright(diffuse_before(parts, i), parts.before[i]);
+    if (!is_taken) continue;
+    for (std::size_t i = first; i < first + 3; ++i) {
+      const float left = std::max(parts.before[i] - (parts.other.empty() ? 0.0F : parts.other[i]), 0.0F);
+      if (!std::isfinite(left) || !std::isfinite(light[i]) || (has_albedo && !(parts.albedo[i] >= smallest_albedo)))
+        continue;
+      light[i] = has_albedo ? left / parts.albedo[i] : left;
+    }
+  }
 }
 
 Repairs compose_beauty(Compose compose, const BeautyParts& parts, const std::vector<float>& scattered,
@@ -99,7 +133,6 @@ Repairs compose_beauty(Compose compose, const BeautyParts& parts, const std::vec
     const std::size_t first = 3 * pixel;
     if (!has_changed(first) && !has_changed(first + 1) && !has_changed(first + 2)) continue;
     const double share = parts.matte.empty() ? 1.0 : std::clamp(static_cast<double>(parts.matte[pixel]), 0.0, 1.0);
-    bool its_too_bright = false;
     for (std::size_t i = first; i < first + 3; ++i) {
       const double before = parts.before[i];
       const double diffuse = diffuse_before(parts, i);
@@ -112,7 +145,6 @@ Repairs compose_beauty(Compose compose, const BeautyParts& parts, const std::vec
         const double sum = (1 - share) * (before - diffuse) + share * other + after;
         if (std::isfinite(sum)) value = sum;
       } else if (is_too_bright(diffuse, before)) {
-        its_too_bright = true;
         value = std::max(before - diffuse, std::min(before, 0.0)) + after;
       }
       if (!std::isfinite(static_cast<float>(value))) {
@@ -125,7 +157,6 @@ Repairs compose_beauty(Compose compose, const BeautyParts& parts, const std::vec
       }
       beauty[i] = static_cast<float>(value);
     }
-    repairs.too_bright += its_too_bright ? 1 : 0;
   }
   return repairs;
 }

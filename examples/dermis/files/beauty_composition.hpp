@@ -17,16 +17,18 @@ enum class Compose {
   automatic,   ///< as the passes ask for: see choose_composition
   difference,  ///< it gains what the diffuse light has gained
   sum,         ///< the diffuse light after scattering and the other passes, added up
+  beauty,      ///< the same difference, for the diffuse light that the other passes leave of the beauty
 };
 
 /// How well the passes of a picture add up to its beauty, over the pixels that scatter. Shares are of the beauty.
 struct PassFit {
   std::int64_t pixels = 0;
-  std::int64_t too_bright = 0;  ///< pixels whose diffuse light alone is above 1.05 of the beauty + 0.001
-  double off = 0;               ///< mean distance of the sum of passes from the beauty
-  double missing = 0;           ///< what the sum lacks altogether; below 0: it is too bright
-  double missing_error = 0;     ///< standard error of that
-  double missing_blocks = 0;    ///< how much of the beauty is in blocks of 16 x 16 pixels where much is missing
+  std::int64_t too_bright = 0;     ///< pixels whose diffuse light alone is above 1.05 of the beauty + 0.001
+  double off = 0;                  ///< mean distance of the sum of passes from the beauty
+  double missing = 0;              ///< what the sum lacks altogether; below 0: it is too bright
+  double missing_error = 0;        ///< standard error of that
+  bool beauty_is_smoother = true;  ///< than the sum of passes: by the differences of neighbours in a row
+  double missing_blocks = 0;       ///< how much of the beauty is in blocks of 16 x 16 pixels where much is missing
 
   /// The passes add up to the beauty, pixel by pixel.
   bool adds_up() const { return off <= 0.02; }
@@ -52,13 +54,18 @@ struct BeautyParts {
 
 PassFit measure_passes(const BeautyParts& parts, int width, const std::vector<std::uint8_t>& scatters);
 
-/// A sum if the passes are complete but do not add up pixel by pixel: noise is in them which is not in the beauty, and
-/// a difference would bring it in. Else a difference, which keeps what is in no pass.
+/// If the passes are complete but do not add up pixel by pixel, there is noise in them or in the beauty, which a
+/// difference would bring in: the way that takes the light from the smoother one. Else `automatic`: a difference, which
+/// keeps what is in no pass, with no more light anywhere than the beauty has.
 Compose choose_composition(const PassFit& fit);
+
+/// Puts what the other passes leave of the beauty in place of the light: everywhere, or where the light is too bright.
+/// `light` may be that of the parts.
+void take_light_from_beauty(const BeautyParts& parts, const std::vector<std::uint8_t>& scatters, bool everywhere,
+                            std::vector<float>& light);
 
 /// Values that were not to be had.
 struct Repairs {
-  std::int64_t too_bright = 0;  ///< pixels where the light that a difference takes away was not in the beauty
   std::int64_t negative = 0;    ///< values that would have come to be below 0, and are 0
   std::int64_t not_finite = 0;  ///< values that would not have been finite, and are as they were
 };
@@ -71,7 +78,8 @@ Repairs compose_beauty(Compose compose, const BeautyParts& parts, const std::vec
 }  // namespace dermis::program
 
 template <>
-inline constexpr std::array<dermis::Named<dermis::program::Compose>, 3> dermis::word_table<dermis::program::Compose> = {
+inline constexpr std::array<dermis::Named<dermis::program::Compose>, 4> dermis::word_table<dermis::program::Compose> = {
     {{dermis::program::Compose::automatic, "auto"},
      {dermis::program::Compose::difference, "difference"},
-     {dermis::program::Compose::sum, "sum"}}};
+     {dermis::program::Compose::sum, "sum"},
+     {dermis::program::Compose::beauty, "beauty"}}};

@@ -29,16 +29,14 @@ class ChannelBytes {
 
   bool same_format(const ChannelBytes& other) const { return view_.layout.format == other.view_.layout.format; }
 
-  bool same_bits(const ChannelBytes& other, int x, int y) const {
-    return std::memcmp(at(x, y), other.at(x, y), size_) == 0;
-  }
+  std::size_t size() const { return size_; }  ///< of a value
 
- private:
   const std::byte* at(int x, int y) const {
     const Layout& layout = view_.layout;
     return static_cast<const std::byte*>(view_.host) + layout.offset + y * layout.row_stride + x * layout.pixel_stride;
   }
 
+ private:
   Image view_;
   std::size_t size_;
 };
@@ -59,26 +57,41 @@ SharedChannels share_channels(const exr::Picture& a, const exr::Picture& b, std:
   return shared;
 }
 
-oracle::Picture values_of(const exr::Picture& picture, const ChannelGroup& group) {
-  const std::size_t channels = group.channels.size();
-  oracle::Picture values(picture.width(), picture.height(), static_cast<int>(channels));
-  for (std::size_t c = 0; c < channels; ++c) {
-    const std::vector<float> plane = picture.plane(group.channels[c]);
-    for (std::size_t i = 0; i < plane.size(); ++i) values.values[i * channels + c] = plane[i];
+exr::Window common_window(const exr::Window& a, const exr::Window& b) {
+  const int left = std::max(a.x, b.x);
+  const int top = std::max(a.y, b.y);
+  return {left, top, std::min(a.x + a.width, b.x + b.width) - left, std::min(a.y + a.height, b.y + b.height) - top};
+}
+
+oracle::Picture values_of(const exr::Picture& picture, const ChannelGroup& group, const exr::Window& window) {
+  const exr::Window data = picture.data_window();
+  oracle::Picture values(window.width, window.height, static_cast<int>(group.channels.size()));
+  auto value = values.values.begin();
+  std::vector<std::vector<float>> planes;
+  for (const std::string& channel : group.channels) planes.push_back(picture.plane(channel));
+  for (int y = window.y - data.y; y < window.y - data.y + window.height; ++y) {
+    const std::size_t row = static_cast<std::size_t>(y) * static_cast<std::size_t>(data.width);
+    for (int x = window.x - data.x; x < window.x - data.x + window.width; ++x)
+      for (const std::vector<float>& plane : planes) *value++ = plane[row + static_cast<std::size_t>(x)];
   }
   return values;
 }
 
 std::int64_t count_different_bits(const exr::Picture& a, const exr::Picture& b, const std::string& channel,
-                                  const std::optional<oracle::Picture>& mask) {
+                                  const exr::Window& window, const std::optional<oracle::Picture>& mask) {
   const ChannelBytes bytes_a(a, channel);
   const ChannelBytes bytes_b(b, channel);
   const bool same_format = bytes_a.same_format(bytes_b);
   std::int64_t different = 0;
-  for (int y = 0; y < a.height(); ++y) {
-    for (int x = 0; x < a.width(); ++x) {
-      const bool asked = !mask || (*mask)(x, y) != 0;
-      if (asked && !(same_format && bytes_a.same_bits(bytes_b, x, y))) ++different;
+  const exr::Window in_a = a.data_window();
+  const exr::Window in_b = b.data_window();
+  for (int y = window.y; y < window.y + window.height; ++y) {
+    for (int x = window.x; x < window.x + window.width; ++x) {
+      const bool asked = !mask || (*mask)(x - window.x, y - window.y) != 0;
+      if (!asked) continue;
+      const bool same = same_format && std::memcmp(bytes_a.at(x - in_a.x, y - in_a.y),
+                                                   bytes_b.at(x - in_b.x, y - in_b.y), bytes_a.size()) == 0;
+      if (!same) ++different;
     }
   }
   return different;

@@ -27,12 +27,15 @@ struct SharedChannels {
 
 SharedChannels share_channels(const exr::Picture& a, const exr::Picture& b, std::string_view prefix);
 
-/// The values of a group.
-oracle::Picture values_of(const exr::Picture& picture, const ChannelGroup& group);
+/// The pixels that two windows have in common; a width or height below 1 if there are none.
+exr::Window common_window(const exr::Window& a, const exr::Window& b);
 
-/// Counts the values of a channel that differ in their bits, among all or among those where `mask` (1 channel) is not
-/// 0. All of them if the formats differ.
+/// The values of a group in a part of the data window.
+oracle::Picture values_of(const exr::Picture& picture, const ChannelGroup& group, const exr::Window& window);
+
+/// Counts the values of a channel that differ in their bits, among all of a window that both have or among those where
+/// `mask` (1 channel, of the window) is not 0. All of them if the formats differ.
 std::int64_t count_different_bits(const exr::Picture& a, const exr::Picture& b, const std::string& channel,
-                                  const std::optional<oracle::Picture>& mask);
+                                  const exr::Window& window, const std::optional<oracle::Picture>& mask);
 
 }  // namespace dermis::program

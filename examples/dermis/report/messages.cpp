@@ -6,7 +6,10 @@
 #include <cstdio>
 #include <exception>
 #include <new>
+#include <optional>
 #include <utility>
+
+#include "files/pocl_cache.hpp"
 
 namespace dermis::program {
 namespace {
@@ -24,9 +27,13 @@ void print_line(std::string_view kind, std::string_view message) {
   fmt::print(stderr, "dermis: {}: {}\n", kind, one_line(message));
 }
 
+/// A device that fails may do so because PoCL cannot keep what it compiles, which it does not say.
 int report(ErrorCode code, std::string_view file, std::string_view message) {
-  const bool is_named = file.empty() || message.starts_with(file);
-  print_error(is_named ? std::string(message) : fmt::format("{}: {}", file, message));
+  std::string line(message);
+  if (!file.empty() && !message.starts_with(file)) line = fmt::format("{}: {}", file, message);
+  const auto problem = code == ErrorCode::device ? cache_problem() : std::nullopt;
+  if (problem && line.find(*problem) == std::string::npos) line += fmt::format(" ({})", *problem);
+  print_error(line);
   return static_cast<int>(code);
 }
 
