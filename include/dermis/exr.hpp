@@ -68,6 +68,16 @@ class Picture {
   Image view(std::span<const std::string> names) const;
   OutputImage view_to_write(std::span<const std::string> names);
 
+  /// The names of all attributes in the file's header, and of those that were set.
+  std::vector<std::string> attribute_names() const;
+
+  /// The value of a text attribute; none if there is no such attribute or it is no text.
+  std::optional<std::string> text_attribute(std::string_view name) const;
+
+  /// The numbers of an attribute: int, float, double, vectors, and matrices row by row; of a text the numbers that it
+  /// lists with blanks or commas between them. Empty if there is no such attribute or it is anything else.
+  std::vector<double> number_attribute(std::string_view name) const;
+
   /// Sets a text attribute.
   void set_attribute(std::string_view name, std::string_view value);
 

@@ -168,11 +168,4 @@ OutputImage Picture::view_to_write(std::span<const std::string> names) {
   return {.host = state_->pixels.data(), .layout = layout_of(*this, names, state_->pixels)};
 }
 
-void Picture::set_attribute(std::string_view name, std::string_view value) {
-  if (name.empty() || name.size() > max_name || name.find('\0') != std::string_view::npos) {
-    throw Error(ErrorCode::usage, "name of an attribute", '"' + escaped(name) + '"', "1 to 255 characters");
-  }
-  state_->description.attributes->set_text(name, value);
-}
-
 }  // namespace dermis::exr

@@ -54,6 +54,7 @@ Picture Picture::read(const std::filesystem::path& path, std::size_t room) {
     read_pixels(*reader, picture.state_->pixels);
     picture.state_->description = found;
     picture.state_->description.channels.clear();
+    picture.state_->header = header;
     return picture;
   } catch (const Error&) {
     throw;
