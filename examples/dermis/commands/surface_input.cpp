@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <future>
 
+#include "arguments/profile_argument.hpp"
 #include "files/surface_pixels.hpp"
 
 namespace dermis::program {
@@ -47,6 +48,8 @@ SurfaceInput read_surface(const std::string& path, const SurfaceRequest& request
   auto images = std::async(std::launch::async,
                            [&] { return load_images(picture, input.roles, request.profiles, request.cryptomatte); });
   input.camera = exr::find_camera(picture, input.roles, request.picture.camera);
+  for (const std::string& warning : input.camera.warnings)
+    fmt::print(stderr, "dermis: warning: {}: {}\n", without_folders(path), warning);
   input.loaded = images.get();
   input.loaded.depth = load_depth_image(picture, input.roles, input.camera);
   if (request.lights) input.translucency = load_translucency_images(picture, input.roles);
