@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "dermis/frame.hpp"
+#include "dermis/words.hpp"
 
 namespace dermis::exr {
 
@@ -268,11 +269,40 @@ struct Mattes {
 Mattes load_cryptomatte(const Picture& picture, const Roles& roles, std::span<const std::string> names,
                         const std::filesystem::path& folder = {});
 
-/// The caller's word on the camera; at most one of fov and focal.
+/// What the values of a depth pass are.
+enum class DepthKind {
+  z,           ///< distance along the view axis, scene units
+  distance,    ///< distance from the eye, scene units
+  inverse,     ///< 1 / z
+  normalized,  ///< 0 at one depth, 1 at another, even between them
+};
+
+struct DepthType {
+  DepthKind kind = DepthKind::z;
+  bool is_negative = false;  ///< the values are the negatives of these
+  double near = 0;           ///< normalized: the depth whose value is 0, scene units
+  double far = 0;            ///< normalized: the depth whose value is 1; less than `near` if 1 is in front
+  bool operator==(const DepthType&) const = default;
+};
+
+/// As --depth-type spells it: "z", "distance-" or "normalized:10,40".
+std::string text_of(const DepthType& type);
+
+/// Two matrices for row vectors, (x, y, z, 1) M, row by row, as OpenEXR's standard attributes of these names.
+struct CameraMatrices {
+  std::array<double, 16> world_to_camera;  ///< the camera looks along +z or -z
+  std::array<double, 16> world_to_ndc;  ///< the display window is 0..1 from its upper left corner, or -1..1 with y up
+};
+
+/// The caller's word on the camera, and on depth; at most one of those on the camera.
 struct CameraHint {
   std::optional<double> fov_deg = {};   ///< horizontal, of the display window; in (0, 180)
   std::optional<double> focal_px = {};  ///< along x; > 0
   std::optional<double> orthographic_px_per_unit = {};
+  std::optional<CameraMatrices> matrices = {};
+  std::optional<DepthType> depth_type = {};
+  std::string name = {};  ///< what messages call the word on the camera, for instance "--camera shot.json"; if empty,
+                          ///< by the option of the program
 };
 
 /// The depth of a position P: direction . P + offset, scene units.
@@ -284,23 +314,46 @@ struct ViewAxis {
 /// A camera and where it comes from.
 struct FoundCamera {
   Camera camera;                      ///< in pixels of the data window
-  std::string source;                 ///< "--fov", "--focal-px", "--px-per-unit", "position and depth" or "position"
+  std::string source;                 ///< "position and depth", "position", the hint's name, or that of an attribute
   double residual_units = 0;          ///< largest distance of a recovered point from its position, if recovered
-  std::optional<ViewAxis> axis = {};  ///< if the picture has positions and no depth
-  /// World space, if recovered: the eye, scene units, or the direction in which an orthographic camera looks.
+  std::optional<ViewAxis> axis = {};  ///< if depth is to be taken from the positions
+  /// World space, if known: the eye, scene units, or the direction in which an orthographic camera looks.
   std::optional<std::array<double, 3>> eye = {};
+  DepthType depth_type = {};  ///< of the depth pass, if there is one that can be used
+  double doubt = 0;           ///< relative standard error of the focal length, or of pixels per unit, if recovered
+  /// What contradicts the camera or could not be used, each in one line.
+  std::vector<std::string> warnings = {};
 };
 
-/// The camera of a picture: from the hint, else by linear least squares from position and depth: P = C + Z x u + Z y v
-/// + Z w (perspective) or P = C + x u + y v + Z n (orthographic), whichever fits; u and v give both focal lengths, w
-/// the centre. Pixels of the background and those that the fit finds off by more than a pixel (antialiased edges) are
-/// left out. Of a picture that has positions and no depth, the view axis is found first, from where the positions lie
-/// on the picture (Hartley and Zisserman 2004, algorithm 7.1), whatever the hint. Throws Error(role_missing) if neither
-/// works, Error(usage) if the hint is not finite or out of range.
+/// The camera of a picture. What comes first counts:
+///
+/// 1. Its positions, if it has some, alone or together with its depth, by least squares over all pixels that are not
+///    background; false ones drop out. A hint, an attribute or a depth that contradicts them is warned of. What the
+///    depth is (DepthKind, its sign) is recognised. Without a depth that can be used, or with one in half beside
+///    positions that are not, depth comes from the positions. The camera is refused unless the focal length is known to
+///    0.1 %, or 0.5 % if the positions are half or lossy.
+/// 2. The hint.
+/// 3. The attributes worldToCamera and worldToNDC.
+/// 4. Attributes of renderers: those that src/exr/camera_attributes.cpp lists.
+///
+/// Throws Error(role_missing) if none of them works, or if a depth without positions cannot be what the hint says, or
+/// along the view axis if that says nothing; Error(usage) if the hint is not finite or out of range.
 FoundCamera find_camera(const Picture& picture, const Roles& roles, const CameraHint& hint = {});
 
-/// The depth of each pixel: that of the picture, else along the view axis, and infinite where a position is not finite,
-/// or all zeros (what Cycles writes where there is nothing). Empty if there is neither.
+/// The depth of each pixel along the view axis: that of the picture, or that of its positions if the camera has an
+/// axis; infinite where there is nothing. Empty if there is neither.
 std::vector<float> load_depth(const Picture& picture, const Roles& roles, const FoundCamera& camera);
 
 }  // namespace dermis::exr
+
+namespace dermis {
+
+template <>
+inline constexpr std::array<Named<exr::DepthKind>, 4> word_table<exr::DepthKind> = {{
+    {exr::DepthKind::z, "z"},
+    {exr::DepthKind::distance, "distance"},
+    {exr::DepthKind::inverse, "inverse"},
+    {exr::DepthKind::normalized, "normalized"},
+}};
+
+}  // namespace dermis

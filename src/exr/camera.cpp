@@ -1,26 +1,26 @@
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
-#include <numbers>
-#include <span>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "dermis/error.hpp"
 #include "dermis/exr.hpp"
-#include "exr/camera_fit.hpp"
-#include "exr/view_axis.hpp"
+#include "exr/camera_attributes.hpp"
+#include "exr/depth_type.hpp"
+#include "exr/median.hpp"
+#include "exr/message_text.hpp"
+#include "exr/position_camera.hpp"
+#include "exr/seen_points.hpp"
 
 namespace dermis::exr {
 namespace {
 
-constexpr double background_depth = 1e9;
-constexpr double most_points = 200000;
-constexpr double rounding_f16 = 1.0 / (1 << 11);
-constexpr double rounding_f32 = 1.0 / (1 << 24);
-constexpr const char* flags = "--fov, --focal-px or --px-per-unit";
+constexpr const char* flags = "--fov, --focal-px, --px-per-unit or --camera";
+constexpr double agreement = 0.001;  // of focal lengths that are told with four digits
+constexpr double standard_errors = 4;
 
 void check(const char* name, std::optional<double> value, double upper, const char* wanted) {
   if (value && !(*value > 0 && *value < upper)) {  // also a NaN
@@ -32,138 +32,123 @@ void check(const CameraHint& hint) {
   check("--fov", hint.fov_deg, 180, "more than 0 and less than 180 degrees");
   check("--focal-px", hint.focal_px, HUGE_VAL, "a finite number above 0");
   check("--px-per-unit", hint.orthographic_px_per_unit, HUGE_VAL, "a finite number above 0");
-  const int given = hint.fov_deg.has_value() + hint.focal_px.has_value() + hint.orthographic_px_per_unit.has_value();
+  const int given = hint.fov_deg.has_value() + hint.focal_px.has_value() + hint.orthographic_px_per_unit.has_value() +
+                    hint.matrices.has_value();
   if (given > 1) throw Error(ErrorCode::usage, "camera", std::to_string(given) + " of " + flags, "one of them");
+  if (hint.depth_type) check(*hint.depth_type);
 }
 
-FoundCamera perspective(const Picture& picture, double focal_px, const char* source) {
-  const Window data = picture.data_window();
-  const Window display = picture.display_window();
-  const double center_x = display.x + display.width / 2.0 - data.x;
-  const double center_y = display.y + display.height / 2.0 - data.y;
-  return {.camera = Camera::perspective(focal_px, focal_px * picture.pixel_aspect(), center_x, center_y),
-          .source = source};
-}
-
-double focal_of(double fov_deg, int width_px) { return width_px / (2 * std::tan(fov_deg * std::numbers::pi / 360)); }
-
-bool is_surface(float depth) { return depth > 0 && depth < background_depth; }
-
-/// True if there is something at a position: Cycles writes zeros where there is nothing.
-bool is_surface(std::span<const float, 3> position) {
-  return std::all_of(position.begin(), position.end(), [](float value) { return std::isfinite(value); }) &&
-         std::any_of(position.begin(), position.end(), [](float value) { return value != 0; });
-}
-
-/// The surface points of the picture: all, or those on a grid coarse enough to be few. Their depth is 0 if the picture
-/// has none.
-std::vector<SeenPoint> points_of(const Picture& picture, const Roles& roles) {
-  const std::vector<float> depth = load(picture, roles, Role::depth);
-  const std::vector<float> position = load(picture, roles, Role::position);
-  const std::size_t pixels = position.size() / 3;
-  std::vector<bool> is_seen(pixels);
-  for (std::size_t i = 0; i < pixels; ++i)
-    is_seen[i] = is_surface(std::span(position).subspan(3 * i).first<3>()) && (depth.empty() || is_surface(depth[i]));
-  const auto surface = static_cast<double>(std::count(is_seen.begin(), is_seen.end(), true));
-  const int step = std::max(1, static_cast<int>(std::ceil(std::sqrt(surface / most_points))));
-  std::vector<SeenPoint> points;
-  for (int y = 0; y < picture.height(); y += step) {
-    for (int x = 0; x < picture.width(); x += step) {
-      const std::size_t i =
-          static_cast<std::size_t>(y) * static_cast<std::size_t>(picture.width()) + static_cast<std::size_t>(x);
-      const float* p = &position[3 * i];
-      if (is_seen[i]) points.push_back({x + 0.5, y + 0.5, depth.empty() ? 0.0 : depth[i], {p[0], p[1], p[2]}});
-    }
-  }
-  return points;
-}
-
-double rounding_of(const Picture& picture, const ChannelSum& sum) {
-  const bool half = std::any_of(sum.begin(), sum.end(), [&picture](const std::vector<std::string>& group) {
-    return picture.find(group[0])->format == Format::f16;
-  });
-  return half ? rounding_f16 : rounding_f32;
-}
-
-double depth_of(const ViewAxis& axis, const std::array<double, 3>& p) {
-  return axis.direction[0] * p[0] + axis.direction[1] * p[1] + axis.direction[2] * p[2] + axis.offset;
-}
-
-/// A fit of one kind of camera, and the axis that gave the depths if the picture has none.
-struct Recovery {
-  FitOutcome outcome;
-  std::optional<ViewAxis> axis = {};
-};
-
-Recovery recover(Camera::Projection projection, std::vector<SeenPoint> points, bool has_depth, double rounding) {
-  if (has_depth) return {fit_camera(projection, points, rounding)};
-  const std::optional<ViewAxis> axis = find_view_axis(projection, points, rounding);
-  if (!axis) return {{.fit = {}, .why_not = "all points lie on one plane"}};
-  for (SeenPoint& point : points) point.depth = depth_of(*axis, point.position);
-  return {fit_camera(projection, points, rounding), axis};
-}
-
-FoundCamera recovered(const Picture& picture, const Roles& roles) {
-  const bool has_depth = roles.has(Role::depth);
-  const std::string source = has_depth ? "position and depth" : "position";
-  const std::vector<SeenPoint> points = points_of(picture, roles);
-  const double rounding = rounding_of(picture, roles[has_depth ? Role::depth : Role::position]);
-  const Recovery perspective = recover(Camera::Projection::perspective, points, has_depth, rounding);
-  const Recovery orthographic = recover(Camera::Projection::orthographic, points, has_depth, rounding);
-  const auto& [lens, parallel] = std::pair(perspective.outcome, orthographic.outcome);
-  if (!lens.fit && !parallel.fit) {
-    const std::string why = lens.why_not == parallel.why_not
-                                ? lens.why_not
-                                : "perspective: " + lens.why_not + "; orthographic: " + parallel.why_not;
-    throw Error(ErrorCode::role_missing, "camera", source + " that no camera fits (" + why + ")",
-                has_depth ? flags : std::string("a depth pass, with it or with ") + flags);
-  }
-  // Without depths a lens far away fits as well as parallel rays do.
-  const double preference = has_depth ? 1 : 1.5;
-  const bool is_perspective = lens.fit && (!parallel.fit || preference * lens.fit->rms_px <= parallel.fit->rms_px);
-  const CameraFit& fit = is_perspective ? *lens.fit : *parallel.fit;
-  return {.camera = fit.camera,
-          .source = source,
-          .residual_units = fit.residual_units,
-          .axis = is_perspective ? perspective.axis : orthographic.axis,
-          .eye = fit.eye};
-}
-
-std::optional<FoundCamera> hinted(const Picture& picture, const CameraHint& hint) {
-  if (hint.fov_deg) return perspective(picture, focal_of(*hint.fov_deg, picture.display_window().width), "--fov");
-  if (hint.focal_px) return perspective(picture, *hint.focal_px, "--focal-px");
+/// The camera that the caller tells, if one.
+std::optional<FoundCamera> told_camera(const Picture& picture, const CameraHint& hint) {
+  const auto source = [&hint](const char* option) { return hint.name.empty() ? option : hint.name; };
+  if (hint.fov_deg)
+    return FoundCamera{.camera = centred_camera(picture, focal_px_of(picture, *hint.fov_deg)),
+                       .source = source("--fov")};
+  if (hint.focal_px)
+    return FoundCamera{.camera = centred_camera(picture, *hint.focal_px), .source = source("--focal-px")};
   if (hint.orthographic_px_per_unit) {
     const double scale = *hint.orthographic_px_per_unit;
     return FoundCamera{.camera = Camera::orthographic(scale, scale * picture.pixel_aspect()),
-                       .source = "--px-per-unit"};
+                       .source = source("--px-per-unit")};
   }
+  if (hint.matrices) return camera_of_matrices(picture, *hint.matrices, source("worldToCamera and worldToNDC"));
   return std::nullopt;
+}
+
+std::string text_of(const Camera& camera) {
+  return camera.projection == Camera::Projection::perspective
+             ? "a focal length of " + short_text(camera.scale_x) + " px"
+             : short_text(camera.scale_x) + " px per unit, orthographic";
+}
+
+/// Adds a warning if another word on the camera contradicts the positions.
+void compare(const std::optional<FoundCamera>& other, FoundCamera& found) {
+  if (!other) return;
+  const bool is_same_kind = other->camera.projection == found.camera.projection;
+  const double difference = std::abs(std::log(other->camera.scale_x / found.camera.scale_x));
+  if (is_same_kind && difference <= agreement + standard_errors * found.doubt) return;
+  found.warnings.push_back(other->source + " says " + text_of(other->camera) + ", the positions say " +
+                           text_of(found.camera) + ", which is used");
+}
+
+double depth_of(const ViewAxis& axis, const float* p) {
+  return axis.direction[0] * static_cast<double>(p[0]) + axis.direction[1] * static_cast<double>(p[1]) +
+         axis.direction[2] * static_cast<double>(p[2]) + axis.offset;
+}
+
+/// Where a camera sees a point of this depth in the middle of a pixel, as its view axis and eye say: false if positions
+/// are in another space than its matrices.
+bool sees_positions(const Picture& picture, const Roles& roles, const FoundCamera& camera) {
+  const std::vector<float> position = load(picture, roles, Role::position);
+  std::vector<double> depths;
+  for (std::size_t i = 0; i < position.size(); i += 3)
+    if (is_surface_position(&position[i])) depths.push_back(depth_of(*camera.axis, &position[i]));
+  return !depths.empty() && median(std::move(depths)) > 0;
+}
+
+/// The depth of a camera that does not come from positions.
+void add_depth(const Picture& picture, const Roles& roles, const CameraHint& hint, const std::string& why_not,
+               FoundCamera& found) {
+  if (roles.has(Role::depth)) {
+    found.axis.reset();
+    if (hint.depth_type) {
+      found.depth_type = *hint.depth_type;
+    } else {
+      check_unknown_depth(load(picture, roles, Role::depth));
+    }
+    return;
+  }
+  if (!roles.has(Role::position)) {
+    found.axis.reset();
+    return;
+  }
+  if (found.axis && sees_positions(picture, roles, found)) return;
+  throw Error(ErrorCode::role_missing, "depth", "positions alone, which do not tell it (" + why_not + ")",
+              "a depth pass, or worldToCamera and worldToNDC");
 }
 
 }  // namespace
 
 FoundCamera find_camera(const Picture& picture, const Roles& roles, const CameraHint& hint) {
   check(hint);
-  if (std::optional<FoundCamera> found = hinted(picture, hint)) {
-    if (roles.has(Role::position) && !roles.has(Role::depth)) found->axis = recovered(picture, roles).axis;
-    return *found;
+  const std::optional<FoundCamera> told = told_camera(picture, hint);
+  AttributeCamera attributes = camera_of_attributes(picture);
+  std::string why_not = "no position pass to find it from";
+  if (roles.has(Role::position)) {
+    PositionCamera positions = find_position_camera(picture, roles, hint.depth_type);
+    if (positions.found) {
+      compare(told, *positions.found);
+      compare(attributes.found, *positions.found);
+      return std::move(*positions.found);
+    }
+    why_not = std::string(roles.has(Role::depth) ? "position and depth" : "position") + " that no camera fits (" +
+              positions.why_not + ")";
   }
-  if (!roles.has(Role::position)) {
-    throw Error(ErrorCode::role_missing, "camera", "no position pass to find it from",
-                std::string("a position pass, or ") + flags);
+  std::optional<FoundCamera> found = told ? told : attributes.found;
+  if (!found) {
+    for (const std::string& warning : attributes.warnings) why_not += "; " + warning;
+    throw Error(ErrorCode::role_missing, "camera", why_not,
+                roles.has(Role::position) ? flags : std::string("a position pass, or ") + flags);
   }
-  return recovered(picture, roles);
+  add_depth(picture, roles, hint, why_not, *found);
+  if (roles.has(Role::position)) found->warnings.push_back("camera from " + found->source + ": " + why_not);
+  if (!told) found->warnings.insert(found->warnings.end(), attributes.warnings.begin(), attributes.warnings.end());
+  return *found;
 }
 
 std::vector<float> load_depth(const Picture& picture, const Roles& roles, const FoundCamera& camera) {
-  if (roles.has(Role::depth) || !camera.axis) return load(picture, roles, Role::depth);
+  if (!camera.axis) {
+    std::vector<float> depth = load(picture, roles, Role::depth);
+    convert(depth, picture.width(), camera.camera, camera.depth_type);
+    return depth;
+  }
   const std::vector<float> position = load(picture, roles, Role::position);
   std::vector<float> depth;
   depth.reserve(position.size() / 3);
   for (std::size_t i = 0; i < position.size(); i += 3) {
-    const auto p = std::span(position).subspan(i).first<3>();
-    depth.push_back(is_surface(p) ? static_cast<float>(depth_of(*camera.axis, {p[0], p[1], p[2]}))
-                                  : std::numeric_limits<float>::infinity());
+    const double z = depth_of(*camera.axis, &position[i]);
+    depth.push_back(is_surface_position(&position[i]) && z > 0 ? static_cast<float>(z)
+                                                               : std::numeric_limits<float>::infinity());
   }
   return depth;
 }

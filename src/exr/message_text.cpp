@@ -1,6 +1,8 @@
 #include "exr/message_text.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cstdio>
 
 #include "dermis/exr.hpp"
 
@@ -51,6 +53,12 @@ std::string lower(std::string_view text) {
   std::transform(out.begin(), out.end(), out.begin(),
                  [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
   return out;
+}
+
+std::string short_text(double value) {
+  std::array<char, 32> buffer;
+  std::snprintf(buffer.data(), buffer.size(), "%.4g", value);
+  return buffer.data();
 }
 
 }  // namespace dermis::exr

@@ -18,4 +18,7 @@ std::string channel_list(const Picture& picture);
 /// `text` in lower case (ASCII only).
 std::string lower(std::string_view text);
 
+/// A number with 4 digits.
+std::string short_text(double value);
+
 }  // namespace dermis::exr

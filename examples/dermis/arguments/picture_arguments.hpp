@@ -25,7 +25,7 @@ void add_role_arguments(CLI::App& app, PictureArguments& arguments);
 /// Adds --mm-per-unit.
 void add_scale_argument(CLI::App& app, PictureArguments& arguments);
 
-/// Adds --fov, --focal-px and --px-per-unit.
+/// Adds --fov, --focal-px, --px-per-unit, --camera and --depth-type.
 void add_camera_arguments(CLI::App& app, exr::CameraHint& camera);
 
 /// The options about the camera that were given, with a space before each.

@@ -372,6 +372,7 @@ Outcome filter_picture(const FilterJob& job, const PictureFiles& files, FilterSe
   std::vector<ViewResult> results;
   for (const std::string& view : views) {
     SurfaceInput input = load_surface(picture, files.input, view, job.surface, !files.outputs.preview.empty());
+    for (const std::string& warning : input.camera.warnings) messages.warn(ErrorCode::role_missing, "camera", warning);
     results.push_back(filter_view(job, files, input, session, step, messages));
   }
   write_pictures(job, files.outputs, results, picture);

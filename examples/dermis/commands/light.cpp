@@ -49,6 +49,8 @@ Viewer viewer_of(const LightArguments& arguments, const exr::Picture& picture, c
     return {Camera::Projection::perspective, {arguments.eye[0], arguments.eye[1], arguments.eye[2]}};
   try {
     const exr::FoundCamera found = exr::find_camera(picture, roles);
+    if (!found.eye)
+      throw Error(ErrorCode::role_missing, "camera", found.source + ", which does not tell where it stands", "");
     return {found.camera.projection, *found.eye};
   } catch (const Error& error) {
     const std::string line = error.what();

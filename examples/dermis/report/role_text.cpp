@@ -42,8 +42,11 @@ std::string text_of(const exr::FoundCamera& found) {
                                            camera.scale_x, camera.scale_y, camera.center_x, camera.center_y)
                              : fmt::format("orthographic, {:.6g} x {:.6g} px per unit", camera.scale_x, camera.scale_y);
   const std::string residual =
-      found.source.starts_with("--") ? "" : fmt::format(", off by {:.2g} units at most", found.residual_units);
-  return fmt::format("{}, from {}{}", kind, found.source, residual);
+      found.doubt > 0 ? fmt::format(", off by {:.2g} units at most", found.residual_units) : "";
+  const std::string depth =
+      found.depth_type == exr::DepthType{} ? "" : fmt::format(", depth is {}", exr::text_of(found.depth_type));
+  const std::string axis = found.axis && found.source != "position" ? ", depth is that of the positions" : "";
+  return fmt::format("{}, from {}{}{}", kind, found.source, residual, axis.empty() ? depth : axis);
 }
 
 json json_of(const exr::Roles& roles) {
@@ -62,7 +65,11 @@ json json_of(const exr::FoundCamera& found) {
           {"center_x", found.camera.center_x},
           {"center_y", found.camera.center_y},
           {"source", found.source},
-          {"residual_units", found.residual_units}};
+          {"residual_units", found.residual_units},
+          {"doubt", found.doubt},
+          {"depth_type", exr::text_of(found.depth_type)},
+          {"depth_from", found.axis ? "position" : "depth"},
+          {"warnings", found.warnings}};
 }
 
 }  // namespace dermis::program

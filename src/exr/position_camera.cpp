@@ -1,0 +1,373 @@
+#include "exr/position_camera.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <utility>
+
+#include "exr/depth_type.hpp"
+#include "exr/median.hpp"
+#include "exr/message_text.hpp"
+#include "exr/projection_fit.hpp"
+#include "exr/projection_start.hpp"
+#include "exr/seen_points.hpp"
+
+namespace dermis::exr {
+namespace {
+
+constexpr double most_noise_px = 0.5;  // a disc of confusion of 1 px radius, or a point anywhere in 1.7 px
+constexpr double least_share = 0.5;    // of the points that must be true
+constexpr double errors_allowed = 4;   // standard errors
+constexpr double limit_fine = 0.001;   // of the focal length
+constexpr double limit_coarse = 0.005;
+constexpr double as_good = 1.2;  // times the noise of another fit
+constexpr double plane = 1e-3;   // thickness of points over their extent
+constexpr std::size_t refined_starts = 3;
+
+bool is_good(const std::optional<Fit>& fit) {
+  return fit && fit->share >= least_share && fit->noise_px <= most_noise_px;
+}
+
+/// The better of two fits: less noise, where both are made of half of the points.
+bool is_better(const std::optional<Fit>& a, const std::optional<Fit>& b) {
+  if (!a || !b) return a.has_value();
+  if (is_good(a) != is_good(b)) return is_good(a);
+  return a->off_px < b->off_px;
+}
+
+/// A depth pass as it would be if its values were of this type, in units of the points.
+FitModel model_with(const SeenPoints& points, const DepthType& type) {
+  FitModel model;
+  model.depth = type.kind == DepthKind::distance ? FitModel::Depth::distance : FitModel::Depth::along_axis;
+  for (const float value : points.depth) {
+    const double depth = static_cast<double>(unfolded(value, type)) / points.unit;
+    model.depths.push_back(std::isfinite(depth) ? depth : 1e9);  // no point of a scene
+  }
+  return model;
+}
+
+/// Searches the projections that see points, with depths of a type or without.
+class Search {
+ public:
+  explicit Search(const SeenPoints& points) : points_(points), all_(spread(points, points.size())) {}
+
+  /// From linear solutions of all points; if that leads nowhere, of a few that are chosen at random.
+  std::optional<Fit> free() const {
+    const FitModel model;
+    std::vector<std::pair<double, Projection>> starts;
+    for (const auto& start : {solve_lens(points_, all_), solve_parallel(points_, all_)})
+      if (start) starts.emplace_back(median_error_px(points_, all_, *start), *start);
+    std::sort(starts.begin(), starts.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    std::optional<Fit> best;
+    for (const auto& start : starts)
+      if (!is_good(best)) keep_better(best, fit_projection(points_, start.second, model));
+    if (is_good(best)) return best;
+    refine(best, solve_lens, 7, model);
+    if (!is_good(best)) refine(best, solve_parallel, 5, model);
+    return best;
+  }
+
+  std::optional<Fit> with_depth(const FitModel& model, const std::optional<Fit>& before) const {
+    std::optional<Fit> best;
+    const LinearSolution solution = [&model](const SeenPoints& points, const Rows& rows) {
+      return solve_with_depth(points, model.depths, rows);
+    };
+    if (const auto start = solution(points_, all_)) best = fit_projection(points_, *start, model);
+    if (!is_good(best) && before && before->projection.closeness > 0)
+      keep_better(best, fit_projection(points_, before->projection, model));
+    if (!is_good(best)) refine(best, solution, 5, model);
+    return best;
+  }
+
+ private:
+  static void keep_better(std::optional<Fit>& best, std::optional<Fit> other) {
+    if (is_better(other, best)) best = std::move(other);
+  }
+
+  void refine(std::optional<Fit>& best, const LinearSolution& solution, std::size_t sample,
+              const FitModel& model) const {
+    for (const Projection& start : random_starts(points_, solution, sample, refined_starts)) {
+      keep_better(best, fit_projection(points_, start, model));
+      if (is_good(best)) return;
+    }
+  }
+
+  const SeenPoints& points_;
+  Rows all_;
+};
+
+/// Depths against what the camera says they should be: depth = offset + factor expected.
+struct Line {
+  double offset = 0;
+  double factor = 0;
+  double off = 0;  ///< median of the relative errors of the expected values
+};
+
+/// Through the middles of the nearer and of the farther half, then through what is near it.
+Line line_through(const std::vector<double>& expected, std::span<const float> depth) {
+  std::vector<std::size_t> rows;
+  for (std::size_t i = 0; i < depth.size(); ++i) rows.push_back(i);
+  Line line;
+  for (int pass = 0; pass < 10; ++pass) {
+    double n = 0, x = 0, y = 0, xx = 0, xy = 0;
+    for (const std::size_t i : rows) {
+      n += 1;
+      x += expected[i];
+      y += static_cast<double>(depth[i]);
+    }
+    for (const std::size_t i : rows) {
+      xx += (expected[i] - x / n) * (expected[i] - x / n);
+      xy += (expected[i] - x / n) * (static_cast<double>(depth[i]) - y / n);
+    }
+    line.factor = xx > 0 ? xy / xx : 0;
+    line.offset = y / n - line.factor * x / n;
+    std::vector<double> errors;
+    for (std::size_t i = 0; i < depth.size(); ++i)
+      errors.push_back(std::abs(line.offset + line.factor * expected[i] - static_cast<double>(depth[i])));
+    const double typical = median(errors);
+    rows.clear();
+    for (std::size_t i = 0; i < depth.size(); ++i)
+      if (errors[i] <= 2 * typical) rows.push_back(i);
+    std::vector<double> scales;
+    for (std::size_t i = 0; i < depth.size(); ++i) scales.push_back(std::abs(line.factor * expected[i]));
+    line.off = typical / std::max(median(std::move(scales)), 1e-300);
+  }
+  return line;
+}
+
+class Finding {
+ public:
+  Finding(const Picture& picture, const Roles& roles, const std::optional<DepthType>& told)
+      : picture_(picture), roles_(roles), told_(told), points_(seen_points(picture, roles)) {
+    coarse_position_ = coarseness(picture, roles[Role::position]);
+    const bool is_coarse = !coarse_position_.empty() || picture.compression() == "pxr24";
+    limit_ = is_coarse ? limit_coarse : limit_fine;
+  }
+
+  PositionCamera run() {
+    if (points_.size() < 16) {
+      return no(points_.size() == 0 ? "no pixel that shows a surface"
+                                    : "only " + std::to_string(points_.size()) + " pixels that are not background");
+    }
+    const Search search(points_);
+    free_ = search.free();
+    if (is_good(free_) && is_known(*free_)) {
+      is_parallel_ = false;
+      fit_ = free_;
+    } else if (is_good(free_)) {
+      fit_ = parallel_fit();
+      is_parallel_ = fit_.has_value();
+      // Parallel rays look the same from both ends; worlds are right-handed unless depth tells otherwise.
+      if (is_parallel_) forward_sign_ = fit_->projection.axes.determinant() > 0 ? 1 : -1;
+    }
+    if (has_depth() && is_parallel_) recognise_parallel_depth();
+    if (has_depth() && !is_parallel_) recognise_depth(search);
+    if (!fit_) return no(reason());
+    return {found(), {}};
+  }
+
+ private:
+  static PositionCamera no(std::string why) { return {{}, std::move(why)}; }
+
+  bool has_depth() const { return !points_.depth.empty(); }
+
+  bool is_known(const Fit& fit) const { return errors_allowed * fit.scale_doubt <= limit_; }
+
+  /// Parallel rays, where no lens that the points allow would change their size by more than the limit.
+  std::optional<Fit> parallel_fit() const {
+    if (!(free_->foreshortening + errors_allowed * free_->foreshortening_doubt <= limit_)) return std::nullopt;
+    std::optional<Fit> fit = fit_projection(points_, free_->projection, {.is_parallel = true});
+    const bool explains_all = is_good(fit) && fit->off_px <= as_good * free_->off_px;
+    return explains_all && is_known(*fit) ? fit : std::nullopt;
+  }
+
+  std::vector<DepthType> types_to_try() const {
+    if (told_ && told_->kind == DepthKind::normalized) return {*told_};
+    const bool is_negative = median({points_.depth.begin(), points_.depth.end()}) < 0;
+    std::vector<DepthType> types = {
+        {DepthKind::z, is_negative}, {DepthKind::distance, is_negative}, {DepthKind::inverse, is_negative}};
+    if (told_) types.insert(types.begin(), *told_);
+    return types;
+  }
+
+  /// The type whose fit with the depths has the least noise, if there is one that agrees with the positions.
+  void recognise_depth(const Search& search) {
+    std::optional<Fit> best;
+    for (const DepthType& type : types_to_try()) {
+      const std::optional<Fit> fit = search.with_depth(model_with(points_, type), free_);
+      if (!is_good(fit) || !is_known(*fit) || !agrees(*fit)) continue;
+      if (!best || fit->noise_px < best->noise_px) {
+        best = fit;
+        type_ = type;
+      }
+      if (is_good(free_) && fit->noise_px <= as_good * free_->noise_px) break;
+    }
+    if (best) fit_ = best;
+  }
+
+  /// True if a fit with depths shows the points where one without them does, and has its focal length.
+  bool agrees(const Fit& fit) const {
+    if (!is_good(free_)) return true;
+    const Eigen::Vector2d ratio = fit.projection.focal_px().cwiseQuotient(free_->projection.focal_px());
+    const double doubt = errors_allowed * std::hypot(fit.scale_doubt, free_->scale_doubt);
+    return !(ratio.array().log().abs().maxCoeff() > doubt + limit_);
+  }
+
+  std::string reason() const {
+    std::string why;
+    if (!free_) {
+      why = "all points on one plane";
+    } else if (!is_good(free_)) {
+      why = "off by " + short_text(free_->off_px) + " px in the median";
+    } else if (is_flat()) {
+      why = "all points on one plane";
+    } else {
+      why = "too flat for its distance, the focal length would be known to " +
+            short_text(std::min(100 * errors_allowed * free_->scale_doubt, 999.0)) + " % only";
+    }
+    if (points_.unit == 1 && points_.position[0].isZero(0) && points_.position.back().isZero(0))
+      why = "positions that are all the same";
+    for (const Role role : {Role::position, Role::depth}) {
+      const std::string coarse = roles_.has(role) ? coarseness(picture_, roles_[role]) : "";
+      if (!coarse.empty()) why += "; " + coarse;
+    }
+    return why;
+  }
+
+  bool is_flat() const {
+    Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+    Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+    for (const Eigen::Vector3d& p : points_.position) middle += p / static_cast<double>(points_.size());
+    for (const Eigen::Vector3d& p : points_.position) spread += (p - middle) * (p - middle).transpose();
+    const Eigen::Vector3d squares = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvalues();
+    return std::sqrt(std::max(squares(0), 0.0)) <= plane * std::sqrt(squares(1));
+  }
+
+  FoundCamera found() const {
+    const Projection& projection = fit_->projection;
+    FoundCamera out;
+    out.source = type_ ? "position and depth" : "position";
+    out.residual_units = fit_->residual_units;
+    out.doubt = fit_->scale_doubt;
+    if (is_parallel_) {
+      const Eigen::Vector3d forward = forward_sign_ * projection.axes.row(2).transpose();
+      const Eigen::Vector2d scale = projection.scale / points_.unit;
+      out.camera = Camera::orthographic(scale.x(), scale.y());
+      out.eye = {forward.x(), forward.y(), forward.z()};
+    } else {
+      const Eigen::Vector2d focal = projection.focal_px();
+      const Eigen::Vector2d center = projection.center_px();
+      out.camera = Camera::perspective(focal.x(), focal.y(), center.x(), center.y());
+      const Eigen::Vector3d eye = points_.origin + points_.unit * projection.eye();
+      out.eye = {eye.x(), eye.y(), eye.z()};
+    }
+    if (type_) out.depth_type = *type_;
+    add_depth(out);
+    warn_of_aspect(out);
+    return out;
+  }
+
+  /// Depth of the positions, for where that of the file does not serve; that of parallel rays begins before all points.
+  ViewAxis axis() const {
+    const Eigen::Vector3d forward = forward_sign_ * fit_->projection.axes.row(2).transpose();
+    double offset = is_parallel_ ? 0 : points_.unit / fit_->projection.closeness;
+    if (is_parallel_) {
+      double least = HUGE_VAL;
+      double most = -HUGE_VAL;
+      for (std::size_t i = 0; i < points_.size(); ++i) {
+        const Eigen::Vector3d& p = points_.position[i];
+        if ((fit_->projection.pixel_px(p) - points_.pixel_px[i]).norm() > 1 + errors_allowed * fit_->off_px) continue;
+        least = std::min(least, forward.dot(p));
+        most = std::max(most, forward.dot(p));
+      }
+      offset = (most - 2 * least + 1) * points_.unit;
+    }
+    return {{forward.x(), forward.y(), forward.z()}, offset - forward.dot(points_.origin)};
+  }
+
+  void add_depth(FoundCamera& out) const {
+    if (!has_depth()) {
+      out.axis = axis();
+      return;
+    }
+    const std::string name = escaped(roles_[Role::depth][0][0]);
+    if (!type_) {
+      out.axis = axis();
+      out.warnings.push_back(contradiction(name));
+    }
+    const bool is_terraced = !coarseness(picture_, roles_[Role::depth]).empty() && coarse_position_.empty();
+    if (is_terraced && fit_->share >= 0.9) out.axis = axis();
+    if (out.axis) return;
+    const bool is_plain = out.depth_type == DepthType{};
+    if (!is_plain && (!told_ || *told_ != out.depth_type))
+      out.warnings.push_back(name + " is not depth along the view axis, but " + text_of(out.depth_type) +
+                             ", by the positions");
+    if (told_ && is_plain && *told_ != out.depth_type)
+      out.warnings.push_back("--depth-type " + text_of(*told_) + ": the positions say z, which is used");
+  }
+
+  /// Depths of parallel rays are those along the axis and a constant. In which of two directions the axis leads, depths
+  /// alone tell: the world may be left-handed.
+  void recognise_parallel_depth() {
+    std::vector<double> along;
+    for (const Eigen::Vector3d& p : points_.position)
+      along.push_back(fit_->projection.axes.row(2).dot(p) * points_.unit);
+    const Line line = line_through(along, points_.depth);
+    std::vector<double> errors;
+    for (std::size_t i = 0; i < along.size(); ++i)
+      errors.push_back(std::abs(line.offset + line.factor * along[i] - static_cast<double>(points_.depth[i])));
+    const double px_per_unit = std::sqrt(fit_->projection.scale.prod()) / points_.unit;
+    const bool fits = median(std::move(errors)) * px_per_unit <= std::max(most_noise_px, errors_allowed * fit_->off_px);
+    if (!fits || std::abs(std::abs(line.factor) - 1) > 0.01) return;
+    const bool is_negative = median({points_.depth.begin(), points_.depth.end()}) < 0;
+    type_ = {.kind = DepthKind::z, .is_negative = is_negative};
+    forward_sign_ = (line.factor < 0) == is_negative ? 1 : -1;
+  }
+
+  /// What is known of a depth that none of the types explains.
+  std::string contradiction(const std::string& name) const {
+    if (is_parallel_) return name + " contradicts the positions: depth comes from the positions";
+    std::vector<double> expected;
+    for (const Eigen::Vector3d& p : points_.position)
+      expected.push_back((1 / fit_->projection.closeness + fit_->projection.axes.row(2).dot(p)) * points_.unit);
+    const Line line = line_through(expected, points_.depth);
+    const std::string end = ": depth comes from the positions";
+    constexpr double small = 0.01;
+    if (line.factor != 0 && line.off <= small) {
+      const double typical = median(expected);
+      if (std::abs(line.offset) <= small * std::abs(line.factor) * typical)
+        return name + " is " + short_text(line.factor) + " times the depth of the positions" + end;
+      return name + " is normalised, 0 at " + short_text(-line.offset / line.factor) + " and 1 at " +
+             short_text((1 - line.offset) / line.factor) + " scene units" + end;
+    }
+    return name + " contradicts the positions" + end;
+  }
+
+  void warn_of_aspect(FoundCamera& out) const {
+    const double aspect = out.camera.scale_y / out.camera.scale_x;
+    if (std::abs(aspect / picture_.pixel_aspect() - 1) > 2 * errors_allowed * fit_->scale_doubt + limit_)
+      out.warnings.push_back("pixelAspectRatio is " + short_text(picture_.pixel_aspect()) + ", but by the positions " +
+                             short_text(aspect) + ", which is used");
+  }
+
+  const Picture& picture_;
+  const Roles& roles_;
+  std::optional<DepthType> told_;
+  SeenPoints points_;
+  std::string coarse_position_;
+  double limit_ = limit_fine;
+  std::optional<Fit> free_;  ///< of the positions alone
+  std::optional<Fit> fit_;   ///< the one that counts
+  bool is_parallel_ = false;
+  double forward_sign_ = 1;        ///< of the axis of parallel rays
+  std::optional<DepthType> type_;  ///< of the depths, if they agree with the positions
+};
+
+}  // namespace
+
+PositionCamera find_position_camera(const Picture& picture, const Roles& roles, const std::optional<DepthType>& told) {
+  return Finding(picture, roles, told).run();
+}
+
+}  // namespace dermis::exr
