@@ -2,6 +2,7 @@
 
 #include "arguments/bad_pixels_argument.hpp"
 #include "arguments/cache_argument.hpp"
+#include "arguments/config_file.hpp"
 #include "arguments/help.hpp"
 #include "arguments/message_arguments.hpp"
 #include "arguments/number_argument.hpp"
@@ -14,6 +15,7 @@ void add_surface_arguments(CLI::App& app, FilterArguments& arguments) {
   add_scale_argument(app, arguments.surface.picture);
   add_material_arguments(app, arguments.surface.materials);
   add_quality_argument(app, arguments.quality);
+  add_config_argument(app);
 }
 
 void add_usual_arguments(CLI::App& app, FilterArguments& arguments) {
@@ -118,6 +120,7 @@ void add_filter_arguments(CLI::App& app, FilterArguments& arguments) {
   add_light_arguments(app, arguments);
   add_result_arguments(app, arguments);
   add_scatter_arguments(app, arguments);
+  mark_settings(app);
 }
 
 void add_job_arguments(CLI::App& app, FilterArguments& arguments) {
@@ -128,6 +131,7 @@ void add_job_arguments(CLI::App& app, FilterArguments& arguments) {
   add_reading_groups(app, arguments.surface);
   add_light_arguments(app, arguments);
   add_scatter_arguments(app, arguments);
+  mark_settings(app);
 }
 
 }  // namespace dermis::program

@@ -65,8 +65,11 @@ void add_role_arguments(CLI::App& app, PictureArguments& arguments) {
                              exr::renderer_names()))
       ->type_name("NAME|FILE.json")
       ->default_str("auto");
-  app.add_option("--eye", arguments.eye, "one view of a stereo picture, as left; else each of them")->type_name("NAME");
   app.add_option("--layer", arguments.layer, "the view layer, if there are several; else the first")->type_name("NAME");
+}
+
+void add_eye_argument(CLI::App& app, PictureArguments& arguments) {
+  app.add_option("--eye", arguments.eye, "one view of a stereo picture, as left; else each of them")->type_name("NAME");
 }
 
 void add_scale_argument(CLI::App& app, PictureArguments& arguments) {

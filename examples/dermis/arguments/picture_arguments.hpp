@@ -19,8 +19,11 @@ struct PictureArguments {
   std::optional<double> mm_per_unit;
 };
 
-/// Adds --role, --preset, --layer and --eye.
+/// Adds --role, --preset and --layer.
 void add_role_arguments(CLI::App& app, PictureArguments& arguments);
+
+/// Adds --eye.
+void add_eye_argument(CLI::App& app, PictureArguments& arguments);
 
 /// Adds --mm-per-unit.
 void add_scale_argument(CLI::App& app, PictureArguments& arguments);

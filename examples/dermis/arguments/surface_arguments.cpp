@@ -11,6 +11,7 @@ void add_reading_groups(CLI::App& app, SurfaceArguments& arguments) {
   {
     const HelpGroup group(app, "Channels");
     add_role_arguments(app, arguments.picture);
+    add_eye_argument(app, arguments.picture);
     add_cryptomatte_argument(app, arguments.cryptomatte);
     app.add_option_function<std::string>(
            "--lighting", [&arguments](const std::string& word) { arguments.lighting = value_named<Lighting>(word); },

@@ -12,10 +12,12 @@
 #include <vector>
 
 #include "arguments/bad_pixels_argument.hpp"
+#include "arguments/config_file.hpp"
 #include "arguments/profile_argument.hpp"
 #include "commands/commands.hpp"
 #include "commands/filter_job.hpp"
 #include "commands/filter_session.hpp"
+#include "commands/input_report.hpp"
 #include "commands/surface_input.hpp"
 #include "dermis/error.hpp"
 #include "dermis/version.hpp"
@@ -269,6 +271,7 @@ ViewResult filter_view(const FilterJob& job, const PictureFiles& files, SurfaceI
     return copy_view(job, input, session, times, messages);
   }
   const std::vector<MaterialPixels> pixels = count_pixels(input, job.surface, messages);
+  report_input(input, job.surface, pixels, count_left_out(input, job.surface), messages);
   const ResultChannels channels = result_channels(job.layers, input, messages);
   check_compression(job.compression, input.picture, input.roles, channels.written);
   std::vector<float> beauty;
@@ -336,6 +339,7 @@ void write_pictures(const FilterJob& job, const OutputFiles& files, const std::v
   for (const ViewResult& result : results) passes.push_back(pass_of(result.channels.scattered));
   picture.set_attribute("dermis:version", DERMIS_VERSION);
   picture.set_attribute("dermis:command", job.command);
+  picture.set_attribute(config_attribute, job.settings);
   picture.set_attribute(scattered_attribute, fmt::format("{}", fmt::join(passes, ", ")));
   const ViewResult& shown = results.front();
   std::optional<TemporaryFile> preview;
@@ -421,8 +425,9 @@ int filter_sequence(const FilterJob& job, FilterSession& session, Messages& mess
   return code;
 }
 
-int run_filter(const FilterArguments& arguments) {
-  const FilterJob job = job_of(arguments);
+int run_filter(const FilterArguments& arguments, const std::string& settings) {
+  FilterJob job = job_of(arguments);
+  job.settings = settings;
   FilterSession session(job.device, job.reuse);
   Messages messages(job.messages);
   if (job.pictures.size() > 1) return filter_sequence(job, session, messages);
@@ -437,7 +442,7 @@ Command add_filter(CLI::App& parent) {
   CLI::App* app = parent.add_subcommand("filter", "scatter the light of a G-buffer under its surfaces");
   const auto arguments = std::make_shared<FilterArguments>();
   add_filter_arguments(*app, *arguments);
-  return {app, [arguments] { return run_filter(*arguments); }};
+  return {app, [app, arguments] { return run_filter(*arguments, settings_of(*app)); }};
 }
 
 }  // namespace dermis::program

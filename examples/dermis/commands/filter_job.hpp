@@ -23,7 +23,8 @@ struct FilterJob {
   bool may_be_empty;
   MessageArguments messages;
   DeviceArguments device;
-  std::string command;  ///< a command without the names of pictures and folders, for the record in the result
+  std::string settings = {};  ///< as TOML, for the record in the result
+  std::string command;        ///< a command without the names of pictures and folders, for the record in the result
 };
 
 /// Throws Error(usage) for what the command line needs and lacks, and for what contradicts; and as request_of.

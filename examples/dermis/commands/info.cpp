@@ -303,6 +303,7 @@ Command add_info(CLI::App& parent) {
   const auto arguments = std::make_shared<InfoArguments>();
   app->add_option("file", arguments->path, "the OpenEXR file to read")->required()->type_name("FILE");
   add_role_arguments(*app, arguments->picture);
+  add_eye_argument(*app, arguments->picture);
   add_scale_argument(*app, arguments->picture);
   add_camera_arguments(*app, arguments->picture.camera);
   add_material_arguments(*app, arguments->materials);

@@ -11,6 +11,7 @@
 #include <string>
 #include <string_view>
 
+#include "arguments/config_file.hpp"
 #include "arguments/help.hpp"
 #include "commands/commands.hpp"
 #include "dermis/error.hpp"
@@ -56,8 +57,16 @@ int parse_and_run(int argc, char** argv) {
                             add_warm(app),    add_profiles(app), add_taps(app),  add_compare_methods(app),
                             add_compare(app), add_preview(app),  add_scene(app), add_devices(app)};
   if (argc > 1 && argv[1][0] != '-') check_command(app, argv[1]);
+  std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
+  if (!words.empty() && words.front()[0] != '-') {
+    const std::vector<std::string> rest(words.begin() + 1, words.end());
+    const std::vector<std::string> all = with_config(*app.get_subcommand(words.front()), rest);
+    words.resize(1);
+    words.insert(words.end(), all.begin(), all.end());
+  }
+  std::reverse(words.begin(), words.end());  // as CLI11 takes a vector
   try {
-    app.parse(argc, argv);
+    app.parse(std::move(words));
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return finish(app.exit(error));  // --help, --version
     return fail(ErrorCode::usage, error.what());

@@ -13,6 +13,8 @@
 #include "commands/filter_session.hpp"
 #include "commands/surface_input.hpp"
 #include "dermis/error.hpp"
+#include "files/picture_roles.hpp"
+#include "report/messages.hpp"
 #include "report/stopwatch.hpp"
 
 namespace dermis::program {
@@ -39,16 +41,19 @@ FrameDescription usual_frames(const SurfaceRequest& surface) {
           .material = have_ids(surface.profiles),
           .mask = false,
           .albedo = true,
-          .matte = !surface.cryptomatte.empty(),
+          .matte = !surface.mattes.empty(),
           .normal = false};
 }
 
 /// Plans for a picture, and runs what else the filter would: all but the plan's own first launches.
 void warm_for(const std::string& path, const FilterJob& job, FilterSession& session) {
-  SurfaceInput input = read_surface(path, job.surface, job.options, false);
+  Messages messages(job.messages);
+  messages.begin(path);
+  exr::Picture picture = read_picture(path);
+  SurfaceInput input = load_surface(picture, path, views_of(picture, job.surface.picture).front(), job.surface, false);
   Frame frame = input.frame(job.surface.mm_per_unit);
-  const ChosenTaps taps = taps_of(job, count_pixels(input, job.surface));
-  transmit_light(session.device(), job.surface, taps.options.lighting, frame, input);
+  const ChosenTaps taps = taps_of(job, count_pixels(input, job.surface, messages), input.lighting);
+  transmit_light(session.device(), job.surface, frame, input);
   session.plan(taps, FrameDescription::of(frame));
   if (!job.reuse) return;
   std::vector<float> scattered(input.loaded.light.size());
@@ -66,7 +71,7 @@ int run_warm(const WarmArguments& arguments) {
     for (const std::string& input : arguments.inputs) warm_for(input, job, session);
     if (arguments.inputs.empty()) {
       const std::vector<MaterialPixels> unknown(job.surface.profiles.size());
-      session.plan(taps_of(job, unknown), usual_frames(job.surface));
+      session.plan(taps_of(job, unknown, job.surface.lighting.value_or(Lighting::raw)), usual_frames(job.surface));
     }
   } catch (const Error& error) {
     throw named_as_option(error);
