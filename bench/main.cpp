@@ -41,7 +41,7 @@ struct Arguments {
   std::string paper;
   bool stress = false;
   std::string against;
-  bool start_up_child = false;
+  std::string start_up_child;  ///< the folder of its caches
   bool answers = false;
 };
 
@@ -146,7 +146,7 @@ void measure(const Arguments& arguments) {
 }
 
 void run(const Arguments& arguments) {
-  if (arguments.start_up_child) return bench::run_start_up_child(arguments.device);
+  if (!arguments.start_up_child.empty()) return bench::run_start_up_child(arguments.device, arguments.start_up_child);
   if (!std::isfinite(arguments.min_ms) || arguments.min_ms < 0) {
     throw Error(ErrorCode::usage, "--min-ms", fmt::format("{}", arguments.min_ms), "milliseconds from 0 on");
   }
@@ -193,7 +193,7 @@ void add_options(CLI::App& app, Arguments& arguments) {
   app.add_option("--paper", arguments.paper,
                  "write the claims of Jimenez et al. 2015 beside what is measured into this folder: table.md, "
                  "claims.json and figures");
-  app.add_flag("--start-up-child", arguments.start_up_child)->group("");
+  app.add_option("--start-up-child", arguments.start_up_child)->group("");
   app.add_flag(bench::answer_option, arguments.answers)->group("");
 }
 

@@ -41,7 +41,7 @@ class CacheFolder {
 
 StartUp run_child(const std::string& cache, const std::string& device_name) {
   ChildProcess child({.path = "/proc/self/exe",
-                      .arguments = {"--start-up-child", "--device", device_name},
+                      .arguments = {"--start-up-child", cache, "--device", device_name},
                       .environment = {{"POCL_CACHE_DIR", cache}, {"CUDA_CACHE_PATH", cache}}});
   const std::optional<std::string> text = child.read_line();
   if (const int status = child.wait(); !text || status != 0) {
@@ -59,11 +59,12 @@ StartUp measure_start_up(bool cache_is_filled, const std::string& device_name) {
   return run_child(cache.path(), device_name);
 }
 
-void run_start_up_child(const std::string& device_name) {
+void run_start_up_child(const std::string& device_name, const std::string& cache) {
   const Case what;
   const Scene scene = make_scene(what.scene);
   const Device device = Device::open(device_name);
-  const auto make_plan = [&] { return Plan(device, scene.materials, {.depth = true}, {.taps = what.design}); };
+  const Options options{.taps = what.design, .cache_folder = cache + "/taps"};
+  const auto make_plan = [&] { return Plan(device, scene.materials, {.depth = true}, options); };
   std::optional<Plan> first, second;
   const double plan_ms = time_ms([&] { first.emplace(make_plan()); });
   // The filter has its own plan, equal to the first, as its images must not be made while the clock runs.

@@ -31,7 +31,7 @@ std::string line_of(const Row& row, std::size_t name_width) {
 
 std::string start_up_table(const std::vector<const Row*>& rows) {
   std::string text = fmt::format("\nstart-up: the first frame of a process, {}\n{:<12} {:>14} {:>14} {:>15} {:>10}\n",
-                                 rows.front()->what.scene.name(), "kernel cache", "first plan, ms", "first run, ms",
+                                 rows.front()->what.scene.name(), "caches", "first plan, ms", "first run, ms",
                                  "second plan, ms", "process MB");
   for (const Row* row : rows) {
     text +=

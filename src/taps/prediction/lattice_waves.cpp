@@ -93,10 +93,16 @@ void LatticeWaves::add_evenly_spaced_images(double sigma_px, Column response) co
   const Eigen::Index own = std::min(wanted, count);
   response.head(own).array() += gaussian.head(own).array() * pixel_responses_.col(1).head(own).array();
   const Eigen::Index before = std::clamp<Eigen::Index>(wanted - period / 2, 0, count);
-  response.tail(before).array() +=
-      gaussian.segment(period / 2, before).reverse().array() * pixel_responses_.col(0).tail(before).array();
+  // Without any, they would begin beyond the end of the vector.
+  if (before > 0) {
+    response.tail(before).array() +=
+        gaussian.segment(period / 2, before).reverse().array() * pixel_responses_.col(0).tail(before).array();
+  }
   const Eigen::Index after = std::clamp<Eigen::Index>(wanted - period, 0, count);
-  response.head(after).array() += gaussian.segment(period, after).array() * pixel_responses_.col(2).head(after).array();
+  if (after > 0) {
+    response.head(after).array() +=
+        gaussian.segment(period, after).array() * pixel_responses_.col(2).head(after).array();
+  }
 }
 
 Eigen::MatrixXd LatticeWaves::of_gaussians(const std::vector<Gaussian>& gaussians, double pixel_mm) const {
