@@ -10,7 +10,6 @@
 #include "dermis/exr.hpp"
 #include "exr/camera_attributes.hpp"
 #include "exr/depth_type.hpp"
-#include "exr/median.hpp"
 #include "exr/message_text.hpp"
 #include "exr/position_camera.hpp"
 #include "exr/seen_points.hpp"
@@ -76,35 +75,21 @@ double depth_of(const ViewAxis& axis, const float* p) {
          axis.direction[2] * static_cast<double>(p[2]) + axis.offset;
 }
 
-/// Where a camera sees a point of this depth in the middle of a pixel, as its view axis and eye say: false if positions
-/// are in another space than its matrices.
-bool sees_positions(const Picture& picture, const Roles& roles, const FoundCamera& camera) {
-  const std::vector<float> position = load(picture, roles, Role::position);
-  std::vector<double> depths;
-  for (std::size_t i = 0; i < position.size(); i += 3)
-    if (is_surface_position(&position[i])) depths.push_back(depth_of(*camera.axis, &position[i]));
-  return !depths.empty() && median(std::move(depths)) > 0;
-}
-
 /// The depth of a camera that does not come from positions.
-void add_depth(const Picture& picture, const Roles& roles, const CameraHint& hint, const std::string& why_not,
-               FoundCamera& found) {
+void add_depth(const Picture& picture, const Roles& roles, const CameraHint& hint,
+               const std::optional<CameraMatrices>& matrices, const std::string& why_not, FoundCamera& found) {
   if (roles.has(Role::depth)) {
-    found.axis.reset();
     if (hint.depth_type) {
       found.depth_type = *hint.depth_type;
     } else {
       check_unknown_depth(load(picture, roles, Role::depth));
     }
-    return;
+  } else if (roles.has(Role::position)) {
+    if (matrices) found.axis = axis_of_positions(picture, load(picture, roles, Role::position), *matrices);
+    if (!found.axis)
+      throw Error(ErrorCode::role_missing, "depth", why_not,
+                  "a depth pass, or worldToCamera and worldToNDC that show the positions where they are");
   }
-  if (!roles.has(Role::position)) {
-    found.axis.reset();
-    return;
-  }
-  if (found.axis && sees_positions(picture, roles, found)) return;
-  throw Error(ErrorCode::role_missing, "depth", "positions alone, which do not tell it (" + why_not + ")",
-              "a depth pass, or worldToCamera and worldToNDC");
 }
 
 }  // namespace
@@ -130,7 +115,7 @@ FoundCamera find_camera(const Picture& picture, const Roles& roles, const Camera
     throw Error(ErrorCode::role_missing, "camera", why_not,
                 roles.has(Role::position) ? flags : std::string("a position pass, or ") + flags);
   }
-  add_depth(picture, roles, hint, why_not, *found);
+  add_depth(picture, roles, hint, hint.matrices ? hint.matrices : attributes.matrices, why_not, *found);
   if (roles.has(Role::position)) found->warnings.push_back("camera from " + found->source + ": " + why_not);
   if (!told) found->warnings.insert(found->warnings.end(), attributes.warnings.begin(), attributes.warnings.end());
   return *found;
