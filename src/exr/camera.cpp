@@ -1,4 +1,4 @@
-#include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -21,6 +21,7 @@ namespace {
 constexpr const char* flags = "--fov, --focal-px, --px-per-unit or --camera";
 constexpr double agreement = 0.001;  // of focal lengths that are told with four digits
 constexpr double standard_errors = 4;
+constexpr double most_stretch = 0.02;  // of distances: what halves and blurred edges leave of them
 
 void check(const char* name, std::optional<double> value, double upper, const char* wanted) {
   if (value && !(*value > 0 && *value < upper)) {  // also a NaN
@@ -76,35 +77,55 @@ double depth_of(const ViewAxis& axis, const float* p) {
          axis.direction[2] * static_cast<double>(p[2]) + axis.offset;
 }
 
-/// Where a camera sees a point of this depth in the middle of a pixel, as its view axis and eye say: false if positions
-/// are in another space than its matrices.
-bool sees_positions(const Picture& picture, const Roles& roles, const FoundCamera& camera) {
+/// How much longer the distances between points are by depth and camera than by their positions: the median over pairs
+/// an eighth of the picture apart. 1 if there is no such pair.
+double stretch_of(const Picture& picture, const Roles& roles, const FoundCamera& found) {
   const std::vector<float> position = load(picture, roles, Role::position);
-  std::vector<double> depths;
-  for (std::size_t i = 0; i < position.size(); i += 3)
-    if (is_surface_position(&position[i])) depths.push_back(depth_of(*camera.axis, &position[i]));
-  return !depths.empty() && median(std::move(depths)) > 0;
+  const std::vector<float> depth = load_depth(picture, roles, found);
+  const auto width = static_cast<std::size_t>(picture.width());
+  const Camera& camera = found.camera;
+  const auto from_depth = [&](std::size_t i) {
+    const double reach = camera.projection == Camera::Projection::perspective ? static_cast<double>(depth[i]) : 1;
+    return std::array{reach * (static_cast<double>(i % width) - camera.center_x) / camera.scale_x,
+                      reach * (static_cast<double>(i / width) - camera.center_y) / camera.scale_y,
+                      static_cast<double>(depth[i])};
+  };
+  const std::size_t step = width * (1 + depth.size() / width / 8) + width / 8;
+  std::vector<double> ratios;
+  for (std::size_t i = 0; i + step < depth.size(); ++i) {
+    const std::size_t j = i + step;
+    const bool is_seen = is_surface_position(&position[3 * i]) && is_surface_position(&position[3 * j]) &&
+                         is_surface_depth(depth[i]) && is_surface_depth(depth[j]);
+    if (!is_seen || (i % width) + width / 8 >= width) continue;
+    const auto a = from_depth(i);
+    const auto b = from_depth(j);
+    double by_depth = 0;
+    double by_position = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      by_depth = std::hypot(by_depth, a[k] - b[k]);
+      by_position =
+          std::hypot(by_position, static_cast<double>(position[3 * i + k]) - static_cast<double>(position[3 * j + k]));
+    }
+    if (by_position > 0) ratios.push_back(by_depth / by_position);
+  }
+  return ratios.empty() ? 1 : median(std::move(ratios));
 }
 
 /// The depth of a camera that does not come from positions.
-void add_depth(const Picture& picture, const Roles& roles, const CameraHint& hint, const std::string& why_not,
-               FoundCamera& found) {
+void add_depth(const Picture& picture, const Roles& roles, const CameraHint& hint,
+               const std::optional<CameraMatrices>& matrices, const std::string& why_not, FoundCamera& found) {
   if (roles.has(Role::depth)) {
-    found.axis.reset();
     if (hint.depth_type) {
       found.depth_type = *hint.depth_type;
     } else {
-      check_unknown_depth(load(picture, roles, Role::depth));
+      check_unknown_depth(load(picture, roles, Role::depth), roles.has(Role::position));
     }
-    return;
+  } else if (roles.has(Role::position)) {
+    if (matrices) found.axis = axis_of_positions(picture, load(picture, roles, Role::position), *matrices);
+    if (!found.axis)
+      throw Error(ErrorCode::role_missing, "depth", why_not,
+                  "a depth pass, or worldToCamera and worldToNDC that show the positions where they are");
   }
-  if (!roles.has(Role::position)) {
-    found.axis.reset();
-    return;
-  }
-  if (found.axis && sees_positions(picture, roles, found)) return;
-  throw Error(ErrorCode::role_missing, "depth", "positions alone, which do not tell it (" + why_not + ")",
-              "a depth pass, or worldToCamera and worldToNDC");
 }
 
 }  // namespace
@@ -130,8 +151,13 @@ FoundCamera find_camera(const Picture& picture, const Roles& roles, const Camera
     throw Error(ErrorCode::role_missing, "camera", why_not,
                 roles.has(Role::position) ? flags : std::string("a position pass, or ") + flags);
   }
-  add_depth(picture, roles, hint, why_not, *found);
-  if (roles.has(Role::position)) found->warnings.push_back("camera from " + found->source + ": " + why_not);
+  add_depth(picture, roles, hint, hint.matrices ? hint.matrices : attributes.matrices, why_not, *found);
+  if (roles.has(Role::depth) && roles.has(Role::position)) {
+    const double stretch = stretch_of(picture, roles, *found);
+    if (!(std::abs(stretch - 1) <= most_stretch))
+      found->warnings.push_back("by " + found->source + " and the depth, distances between points are " +
+                                short_text(stretch) + " times those of the positions");
+  }
   if (!told) found->warnings.insert(found->warnings.end(), attributes.warnings.begin(), attributes.warnings.end());
   return *found;
 }

@@ -6,9 +6,12 @@
 #include <cmath>
 #include <numbers>
 #include <string_view>
+#include <utility>
 
 #include "dermis/error.hpp"
+#include "exr/median.hpp"
 #include "exr/message_text.hpp"
+#include "exr/seen_points.hpp"
 
 namespace dermis::exr {
 namespace {
@@ -33,6 +36,8 @@ constexpr std::array lens_table = {
 // Maya gives apertures in inches. No film is wider than this many inches, and no sensor narrower than so many mm.
 constexpr double widest_aperture_inches = 4;
 constexpr double mm_per_inch = 25.4;
+constexpr double parallel = 1e-6;  // what floats leave of a divisor that does not depend on depth
+constexpr double most_off_px = 1;  // of positions that matrices show where they are, in the median
 
 using Matrix = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
 
@@ -106,10 +111,27 @@ struct Ndc {
 };
 
 /// NDC runs from 0 to 1 and y down, as the standard says, or from -1 to 1 and y up, as some write: the axis of a camera
-/// is nearer to the middle of the one.
-Ndc ndc_of(const Eigen::Vector2d& axis) {
+/// is nearer to the middle of the one. `projection` leads there from the camera.
+Ndc ndc_of(const Matrix& projection) {
+  const int row = std::abs(projection(2, 3)) > parallel * std::abs(projection(3, 3)) ? 2 : 3;
+  const Eigen::Vector2d axis = Eigen::Vector2d(projection(row, 0), projection(row, 1)) / projection(row, 3);
   const bool is_centred = axis.norm() < (axis - Eigen::Vector2d(0.5, 0.5)).norm();
   return is_centred ? Ndc{{(1 + axis.x()) / 2, (1 - axis.y()) / 2}, 2} : Ndc{axis, 1};
+}
+
+/// Where a point in NDC, (x, y, z, w), lies on the data window.
+Eigen::Vector2d pixel_of(const Picture& picture, const Matrix& projection, const Eigen::RowVector4d& point) {
+  const Window data = picture.data_window();
+  const Window display = picture.display_window();
+  const bool is_centred = ndc_of(projection).width == 2;
+  Eigen::Vector2d at(point.x() / point.w(), point.y() / point.w());
+  if (is_centred) at = {(1 + at.x()) / 2, (1 - at.y()) / 2};
+  return {display.x - data.x + at.x() * display.width, display.y - data.y + at.y() * display.height};
+}
+
+Eigen::Vector2d pixel_at(const Picture& picture, std::size_t i) {
+  const auto width = static_cast<std::size_t>(picture.width());
+  return {static_cast<double>(i % width) + 0.5, static_cast<double>(i / width) + 0.5};
 }
 
 }  // namespace
@@ -132,19 +154,17 @@ FoundCamera camera_of_matrices(const Picture& picture, const CameraMatrices& mat
   const Matrix projection =
       lu.isInvertible() ? Matrix(lu.inverse() * matrix_of(matrices.world_to_ndc)) : Matrix::Zero();
   const double towards = projection(2, 3);
-  const double depth_scale = to_camera.block<3, 1>(0, 2).norm();
-  const bool is_lens = std::abs(towards) > 1e-6 * std::abs(projection(3, 3)) && std::abs(towards) > 0;
+  const bool is_lens = std::abs(towards) > parallel * std::abs(projection(3, 3));
   const double divisor = is_lens ? std::abs(towards) : std::abs(projection(3, 3));
   const Eigen::Vector2d scale(std::abs(projection(0, 0)) / divisor, std::abs(projection(1, 1)) / divisor);
-  if (!(scale.allFinite() && scale.minCoeff() > 0 && depth_scale > 0)) {
+  if (!(scale.allFinite() && scale.minCoeff() > 0)) {
     throw Error(ErrorCode::input_unsupported, name, "matrices that belong to no camera",
                 "worldToCamera and worldToNDC of a lens or of parallel rays, for row vectors");
   }
   const Window data = picture.data_window();
   const Window display = picture.display_window();
   const Eigen::Vector2d size(display.width, display.height);
-  const int row = is_lens ? 2 : 3;
-  const Ndc ndc = ndc_of(Eigen::Vector2d(projection(row, 0), projection(row, 1)) / projection(row, 3));
+  const Ndc ndc = ndc_of(projection);
   const Eigen::Vector2d scale_px = scale.cwiseProduct(size) / ndc.width;
   const Eigen::Vector2d center_px =
       ndc.axis.cwiseProduct(size) + Eigen::Vector2d(display.x - data.x, display.y - data.y);
@@ -153,15 +173,35 @@ FoundCamera camera_of_matrices(const Picture& picture, const CameraMatrices& mat
   out.source = name;
   out.camera = is_lens ? Camera::perspective(scale_px.x(), scale_px.y(), center_px.x(), center_px.y())
                        : Camera::orthographic(scale_px.x(), scale_px.y());
-  // The matrices of a lens tell by the sign of the divisor which way it looks; of parallel rays those of a right-handed
-  // camera are taken to look along -z, as OpenGL's do, if y is up in them and z grows to the front.
-  const double sign = is_lens ? (towards > 0 ? 1 : -1) : (projection(2, 2) < 0 ? -1 : 1);
-  const Eigen::Vector3d forward = sign / depth_scale * to_camera.block<3, 1>(0, 2);
   const Matrix to_world = lu.inverse();
-  const Eigen::Vector3d eye = to_world.block<1, 3>(3, 0).transpose();
-  out.axis = ViewAxis{{forward.x(), forward.y(), forward.z()}, sign / depth_scale * to_camera(3, 2)};
-  out.eye = is_lens ? std::array{eye.x(), eye.y(), eye.z()} : std::array{forward.x(), forward.y(), forward.z()};
+  if (is_lens) out.eye = {to_world(3, 0), to_world(3, 1), to_world(3, 2)};
   return out;
+}
+
+std::optional<ViewAxis> axis_of_positions(const Picture& picture, std::span<const float> positions,
+                                          const CameraMatrices& matrices) {
+  const Matrix to_camera = matrix_of(matrices.world_to_camera);
+  const Matrix to_ndc = matrix_of(matrices.world_to_ndc);
+  const Matrix projection = to_camera.inverse() * to_ndc;
+  // Positions in world space, and in that of the camera.
+  for (const auto& [space_to_camera, space_to_ndc] :
+       {std::pair(to_camera, to_ndc), std::pair(Matrix(Matrix::Identity()), projection)}) {
+    std::vector<double> off_px;
+    std::vector<double> along;
+    for (std::size_t i = 0; i < positions.size() / 3; ++i) {
+      const float* p = &positions[3 * i];
+      if (!is_surface_position(p)) continue;
+      const Eigen::RowVector4d point(p[0], p[1], p[2], 1);
+      const Eigen::Vector2d off = pixel_of(picture, projection, point * space_to_ndc) - pixel_at(picture, i);
+      off_px.push_back(std::isfinite(off.norm()) ? off.norm() : HUGE_VAL);
+      along.push_back((point * space_to_camera).z());
+    }
+    if (off_px.empty() || !(median(std::move(off_px)) <= most_off_px)) continue;
+    const double scale = (median(std::move(along)) < 0 ? -1 : 1) / space_to_camera.block<3, 1>(0, 2).norm();
+    const Eigen::Vector3d direction = scale * space_to_camera.block<3, 1>(0, 2);
+    return ViewAxis{{direction.x(), direction.y(), direction.z()}, scale * space_to_camera(3, 2)};
+  }
+  return std::nullopt;
 }
 
 AttributeCamera camera_of_attributes(const Picture& picture) {
@@ -169,6 +209,7 @@ AttributeCamera camera_of_attributes(const Picture& picture) {
   if (const auto matrices = matrices_of(picture)) {
     try {
       out.found = camera_of_matrices(picture, *matrices, "worldToCamera and worldToNDC");
+      out.matrices = matrices;
       return out;
     } catch (const Error& error) {
       out.warnings.emplace_back(error.what());

@@ -21,6 +21,6 @@ void convert(std::vector<float>& depth, int width, const Camera& camera, const D
 
 /// Throws Error(role_missing) if these depths cannot be distances along the view axis, scene units: all negative, all
 /// in 0..1 as normalised ones are, or all the same.
-void check_unknown_depth(std::span<const float> depth);
+void check_unknown_depth(std::span<const float> depth, bool has_positions);
 
 }  // namespace dermis::exr

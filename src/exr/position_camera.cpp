@@ -21,19 +21,14 @@ constexpr double least_share = 0.5;    // of the points that must be true
 constexpr double errors_allowed = 4;   // standard errors
 constexpr double limit_fine = 0.001;   // of the focal length
 constexpr double limit_coarse = 0.005;
-constexpr double as_good = 1.2;  // times the noise of another fit
-constexpr double plane = 1e-3;   // thickness of points over their extent
+constexpr double most_off = 0.05;    // of half the picture: with more than that rounding explains anything
+constexpr double nearly_all = 0.95;  // of the points; if more are false another fit may show more
+constexpr double as_good = 1.05;     // times the error of another fit: medians of thousands are known to 2 %
+constexpr double plane = 1e-3;       // thickness of points over their extent
 constexpr std::size_t refined_starts = 3;
 
-bool is_good(const std::optional<Fit>& fit) {
-  return fit && fit->share >= least_share && fit->noise_px <= most_noise_px;
-}
-
-/// The better of two fits: less noise, where both are made of half of the points.
-bool is_better(const std::optional<Fit>& a, const std::optional<Fit>& b) {
-  if (!a || !b) return a.has_value();
-  if (is_good(a) != is_good(b)) return is_good(a);
-  return a->off_px < b->off_px;
+bool is_good(const std::optional<Fit>& fit, double half_px) {
+  return fit && fit->share >= least_share && fit->noise_px <= most_noise_px && fit->off_px <= most_off * half_px;
 }
 
 /// A depth pass as it would be if its values were of this type, in units of the points.
@@ -57,14 +52,13 @@ class Search {
     const FitModel model;
     std::vector<std::pair<double, Projection>> starts;
     for (const auto& start : {solve_lens(points_, all_), solve_parallel(points_, all_)})
-      if (start) starts.emplace_back(median_error_px(points_, all_, *start), *start);
+      if (start) starts.emplace_back(score(points_, all_, *start), *start);
     std::sort(starts.begin(), starts.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
     std::optional<Fit> best;
     for (const auto& start : starts)
-      if (!is_good(best)) keep_better(best, fit_projection(points_, start.second, model));
-    if (is_good(best)) return best;
-    refine(best, solve_lens, 7, model);
-    if (!is_good(best)) refine(best, solve_parallel, 5, model);
+      if (!is_complete(best)) keep_better(best, fit_projection(points_, start.second, model));
+    if (!is_complete(best)) refine(best, solve_lens, 7, model);
+    if (!is_good(best, points_.half_px)) refine(best, solve_parallel, 5, model);
     return best;
   }
 
@@ -74,22 +68,26 @@ class Search {
       return solve_with_depth(points, model.depths, rows);
     };
     if (const auto start = solution(points_, all_)) best = fit_projection(points_, *start, model);
-    if (!is_good(best) && before && before->projection.closeness > 0)
+    if (!is_complete(best) && before && before->projection.closeness > 0)
       keep_better(best, fit_projection(points_, before->projection, model));
-    if (!is_good(best)) refine(best, solution, 5, model);
+    if (!is_complete(best) && !before) refine(best, solution, 5, model);
     return best;
   }
 
  private:
+  bool is_complete(const std::optional<Fit>& fit) const {
+    return is_good(fit, points_.half_px) && fit->share >= nearly_all;
+  }
+
   static void keep_better(std::optional<Fit>& best, std::optional<Fit> other) {
-    if (is_better(other, best)) best = std::move(other);
+    if (other && (!best || other->score < best->score)) best = std::move(other);
   }
 
   void refine(std::optional<Fit>& best, const LinearSolution& solution, std::size_t sample,
               const FitModel& model) const {
     for (const Projection& start : random_starts(points_, solution, sample, refined_starts)) {
       keep_better(best, fit_projection(points_, start, model));
-      if (is_good(best)) return;
+      if (is_complete(best)) return;
     }
   }
 
@@ -172,14 +170,27 @@ class Finding {
 
   bool has_depth() const { return !points_.depth.empty(); }
 
+  bool is_good(const std::optional<Fit>& fit) const { return exr::is_good(fit, points_.half_px); }
+
   bool is_known(const Fit& fit) const { return errors_allowed * fit.scale_doubt <= limit_; }
 
   /// Parallel rays, where no lens that the points allow would change their size by more than the limit.
   std::optional<Fit> parallel_fit() const {
     if (!(free_->foreshortening + errors_allowed * free_->foreshortening_doubt <= limit_)) return std::nullopt;
     std::optional<Fit> fit = fit_projection(points_, free_->projection, {.is_parallel = true});
-    const bool explains_all = is_good(fit) && fit->off_px <= as_good * free_->off_px;
-    return explains_all && is_known(*fit) ? fit : std::nullopt;
+    return may_be_parallel(fit, *free_) && is_known(*fit) ? fit : std::nullopt;
+  }
+
+  /// True if parallel rays show the points as well as another fit does.
+  bool may_be_parallel(const std::optional<Fit>& parallel, const Fit& other) const {
+    return is_good(parallel) && parallel->off_px <= as_good * other.off_px;
+  }
+
+  /// True if a lens that was found with depths might be parallel rays, to which depths say nothing, and that would
+  /// matter.
+  bool is_ambiguous(const Fit& lens) const {
+    if (!(lens.foreshortening > limit_)) return false;
+    return may_be_parallel(fit_projection(points_, lens.projection, {.is_parallel = true}), lens);
   }
 
   std::vector<DepthType> types_to_try() const {
@@ -196,12 +207,12 @@ class Finding {
     std::optional<Fit> best;
     for (const DepthType& type : types_to_try()) {
       const std::optional<Fit> fit = search.with_depth(model_with(points_, type), free_);
-      if (!is_good(fit) || !is_known(*fit) || !agrees(*fit)) continue;
+      if (!is_good(fit) || !is_known(*fit) || !agrees(*fit) || is_ambiguous(*fit)) continue;
       if (!best || fit->noise_px < best->noise_px) {
         best = fit;
         type_ = type;
       }
-      if (is_good(free_) && fit->noise_px <= as_good * free_->noise_px) break;
+      if (is_good(free_) && fit->off_px <= as_good * free_->off_px) break;
     }
     if (best) fit_ = best;
   }
@@ -235,11 +246,17 @@ class Finding {
     return why;
   }
 
+  /// True if the points that the fit shows lie on one plane.
   bool is_flat() const {
+    std::vector<Eigen::Vector3d> shown;
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      const Eigen::Vector2d off_px = free_->projection.pixel_px(points_.position[i]) - points_.pixel_px[i];
+      if (off_px.norm() <= errors_allowed * free_->off_px + 1e-3) shown.push_back(points_.position[i]);
+    }
     Eigen::Vector3d middle = Eigen::Vector3d::Zero();
     Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
-    for (const Eigen::Vector3d& p : points_.position) middle += p / static_cast<double>(points_.size());
-    for (const Eigen::Vector3d& p : points_.position) spread += (p - middle) * (p - middle).transpose();
+    for (const Eigen::Vector3d& p : shown) middle += p / static_cast<double>(shown.size());
+    for (const Eigen::Vector3d& p : shown) spread += (p - middle) * (p - middle).transpose();
     const Eigen::Vector3d squares = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvalues();
     return std::sqrt(std::max(squares(0), 0.0)) <= plane * std::sqrt(squares(1));
   }

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "exr/median.hpp"
+#include "exr/projection_start.hpp"
 
 namespace dermis::exr {
 namespace {
@@ -100,14 +101,13 @@ class Fitting {
         errors.slope(k, slant_x + k) = p.z() / nearness;
       }
     }
-    if (uses_depth_) add_depth(i, p, turn, nearness, errors);
+    if (uses_depth_) add_depth(i, p, turn, errors);
     return errors;
   }
 
   /// From the eye the point lies at (X - slant / (scale closeness), 1 / closeness + Z).
-  void add_depth(std::size_t i, const Eigen::Vector3d& p, const Eigen::Matrix3d& turn, double nearness,
-                 Errors& errors) const {
-    const double per_unit = std::sqrt(now_.scale.x() * now_.scale.y()) / nearness;
+  void add_depth(std::size_t i, const Eigen::Vector3d& p, const Eigen::Matrix3d& turn, Errors& errors) const {
+    const double per_unit = px_per_unit_[i];
     const double closeness = now_.closeness;
     const Eigen::Vector2d aside = now_.slant.cwiseQuotient(now_.scale) / closeness;
     const Eigen::Vector3d from_eye(p.x() - aside.x(), p.y() - aside.y(), p.z() + 1 / closeness);
@@ -140,7 +140,8 @@ class Fitting {
     return rounding * rounding;
   }
 
-  double variance(std::size_t i) const { return variance(i, now_.px_per_unit(points_.position[i])); }
+  /// As it was when the noise was found last: a projection must not be able to make its errors count less.
+  double variance(std::size_t i) const { return variance(i, px_per_unit_[i]); }
 
   /// The noise that is left in the median when the rounding is taken away; never 0, for errors of rounding are no
   /// longer than their standard deviation by much.
@@ -148,8 +149,9 @@ class Fitting {
     std::vector<double> lengths;
     std::vector<double> roundings;
     for (std::size_t i = 0; i < points_.size(); ++i) {
+      px_per_unit_[i] = now_.px_per_unit(points_.position[i]);
       lengths.push_back(errors_of(i, false).value.norm());
-      roundings.push_back(points_.rounding[i] * now_.px_per_unit(points_.position[i]));
+      roundings.push_back(points_.rounding[i] * px_per_unit_[i]);
     }
     const double all = median(std::move(lengths)) / typical_;
     const double rounding = median(std::move(roundings));
@@ -261,6 +263,7 @@ class Fitting {
       fit.residual_units =
           std::max(fit.residual_units, errors.norm() / now_.px_per_unit(points_.position[i]) * points_.unit);
     }
+    for (const double px : off) fit.score += score_of(px) / static_cast<double>(off.size());
     fit.off_px = median(std::move(off));
     fit.share = static_cast<double>(along.size()) / static_cast<double>(points_.size());
     if (along.size() < fewest_points) return std::nullopt;
@@ -283,7 +286,7 @@ class Fitting {
       }
       fit.scale_doubt = std::max(fit.scale_doubt, error_of(of_scale));
     }
-    if (std::isnan(fit.scale_doubt)) fit.scale_doubt = HUGE_VAL;
+    if (!(fit.scale_doubt > 0)) fit.scale_doubt = HUGE_VAL;  // also a NaN
     return fit;
   }
 
@@ -292,6 +295,7 @@ class Fitting {
   Projection now_;
   bool uses_depth_;
   double typical_;
+  std::vector<double> px_per_unit_ = std::vector<double>(points_.size());
   double noise_px_ = 0;   ///< that errors are weighed by
   double excess_px_ = 0;  ///< beyond the rounding
   double damping_ = 1e-6;

@@ -15,7 +15,8 @@ namespace {
 // lie nearly on one plane (two in three where a floor takes 71 % of the points), happens once in 10^5 pictures.
 constexpr int samples = 400;
 constexpr std::size_t judges = 500;
-constexpr double least_relief = 1e-9;  // of the second smallest eigenvalue; below it two solutions are as good
+constexpr double least_closeness = 0.02;  // per unit; below it a search from parallel rays finds the lens
+constexpr double least_relief = 1e-9;     // of the second smallest eigenvalue; below it two solutions are as good
 
 /// Axes from rows that should be to the right and down, and one that is forward, made perpendicular.
 Eigen::Matrix3d axes_of(const Eigen::Vector3d& right, const Eigen::Vector3d& down, const Eigen::Vector3d& forward) {
@@ -39,11 +40,12 @@ std::optional<Projection> projection_of(const Eigen::Vector2d& middle_px, const 
                                         const Eigen::Vector3d& g) {
   Projection out;
   out.middle_px = middle_px;
-  out.closeness = g.norm();
   const Eigen::Matrix<double, 2, 3> across = a - middle_px * g.transpose();
-  const Eigen::Vector3d forward = out.closeness > 0
-                                      ? Eigen::Vector3d(g / out.closeness)
-                                      : Eigen::Vector3d(across.row(0).cross(across.row(1)).normalized().transpose());
+  // The direction of a small g is that of its errors.
+  const bool is_lens = g.norm() > least_closeness;
+  Eigen::Vector3d forward = is_lens ? g : Eigen::Vector3d(across.row(0).cross(across.row(1)).transpose());
+  forward = (forward.dot(g) < 0 ? -1 : 1) * forward.normalized();
+  out.closeness = forward.dot(g);
   out.slant = across * forward;
   const Eigen::Vector3d right = across.row(0).transpose() - out.slant.x() * forward;
   const Eigen::Vector3d down = across.row(1).transpose() - out.slant.y() * forward;
@@ -148,11 +150,11 @@ Rows spread(const SeenPoints& points, std::size_t count) {
   return rows;
 }
 
-double median_error_px(const SeenPoints& points, const Rows& rows, const Projection& projection) {
-  std::vector<double> errors;
+double score(const SeenPoints& points, const Rows& rows, const Projection& projection) {
+  double sum = 0;
   for (const std::size_t i : rows)
-    errors.push_back((projection.pixel_px(points.position[i]) - points.pixel_px[i]).norm());
-  return median(std::move(errors));
+    sum += score_of((projection.pixel_px(points.position[i]) - points.pixel_px[i]).norm());
+  return sum / static_cast<double>(rows.size());
 }
 
 std::vector<Projection> random_starts(const SeenPoints& points, const LinearSolution& solution, std::size_t sample,
@@ -164,7 +166,7 @@ std::vector<Projection> random_starts(const SeenPoints& points, const LinearSolu
     Rows few;
     for (std::size_t k = 0; k < sample; ++k) few.push_back(random() % points.size());
     if (const std::optional<Projection> start = solution(points, few))
-      found.emplace_back(median_error_px(points, judging, *start), *start);
+      found.emplace_back(score(points, judging, *start), *start);
   }
   std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   std::vector<Projection> starts;

@@ -1,6 +1,7 @@
 /// Where the search for a projection begins: linear solutions, of all points or of few.
 #pragma once
 
+#include <cmath>
 #include <functional>
 #include <optional>
 #include <span>
@@ -29,11 +30,15 @@ std::optional<Projection> solve_with_depth(const SeenPoints& points, std::span<c
 /// Indices of at most `count` points, evenly spread.
 Rows spread(const SeenPoints& points, std::size_t count);
 
-/// The median of how far points are from their pixels.
-double median_error_px(const SeenPoints& points, const Rows& rows, const Projection& projection);
+/// How badly a point is shown that is so far from its pixel: Cauchy's function, in which a few far ones do not outweigh
+/// many near ones, whatever the scale. The median would not see what lies off a plane that takes most of the picture.
+inline double score_of(double error_px) { return std::log1p(4 * error_px * error_px); }
 
-/// The best of the solutions for few points, drawn at random so often that one of them is without a false point: by the
-/// median error, the best first; at most `most`.
+/// The mean of the scores of some points.
+double score(const SeenPoints& points, const Rows& rows, const Projection& projection);
+
+/// The best of the solutions for few points, drawn at random so often that one of them is without a false point: by
+/// their score, the best first; at most `most`.
 std::vector<Projection> random_starts(const SeenPoints& points, const LinearSolution& solution, std::size_t sample,
                                       std::size_t most);
 

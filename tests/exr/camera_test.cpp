@@ -252,8 +252,7 @@ TEST_CASE("positions without depth give the camera and the depth") {
     REQUIRE(told.warnings.size() == found.warnings.size() + 1);
     REQUIRE(told.warnings.back().find("--focal-px says") == 0);
     REQUIRE(dermis::exr::load_depth(picture, roles, told) == depth);
-    if (is_lens)
-      REQUIRE(find_camera(picture, roles, {.focal_px = found.camera.scale_x}).warnings == found.warnings);
+    if (is_lens) REQUIRE(find_camera(picture, roles, {.focal_px = found.camera.scale_x}).warnings == found.warnings);
   }
 }
 

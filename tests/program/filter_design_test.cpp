@@ -324,7 +324,13 @@ TEST_CASE("the size of a pixel is that at the median depth, along the axis with 
       if (ids[i] == 1) own.push_back(depth[i]);
     const auto middle = own.begin() + static_cast<std::ptrdiff_t>(own.size() / 2);
     std::nth_element(own.begin(), middle, own.end());
-    CHECK(pixel_mm(scene.path, {"--focal-px", "80", "--mm-per-unit", "10"}) == Approx(*middle * 10 / 80));
+    const double focal_px = std::stod(scene.camera[1]);
+    CHECK(pixel_mm(scene.path, {"--mm-per-unit", "10"}) == Approx(*middle * 10 / focal_px).epsilon(1e-3));
+    // A hint counts where there are no positions to contradict it.
+    CHECK(pixel_mm(scene.path, {"--focal-px", "80", "--mm-per-unit", "10"}) ==
+          Approx(*middle * 10 / focal_px).epsilon(1e-3));
+    PictureCopy(scene.path).without("ViewLayer.Position").write(folder / "told.exr");
+    CHECK(pixel_mm(folder / "told.exr", {"--focal-px", "80", "--mm-per-unit", "10"}) == Approx(*middle * 10 / 80));
 
     // Positions say that pixels are not square: the finer axis counts.
     const double square = pixel_mm(scene.path, {"--mm-per-unit", "1"});

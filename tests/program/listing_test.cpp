@@ -134,8 +134,12 @@ TEST_CASE("info tells what is missing, and that is no error") {
   CHECK(info["camera"].is_null());
   CHECK(has(info["camera_problem"], "camera"));
   CHECK(has(run_well({"info", folder / "less.exr"}), "light         missing"));
-  const json told = json::parse(run_well({"info", folder / "less.exr", "--json", "--fov", "40"}));
+  const json told = json::parse(run_well({"info", folder / "less.exr", "--json", "--fov", "40", "--depth-type", "z"}));
   CHECK(told["camera"]["scale_x"].get<double>() == Approx(10 / std::tan(20 * 3.14159265358979323846 / 180)));
+  CHECK(told["camera"]["depth_type"] == "z");
+  // One depth everywhere may be anything.
+  const json refused = json::parse(run_well({"info", folder / "less.exr", "--json", "--fov", "40"}));
+  CHECK(has(refused["camera_problem"], "--depth-type"));
   check_refused(run_program({"info", folder / "less.exr", "--fov", "nan"}), 2, {"--fov: got nan"});
 }
 
