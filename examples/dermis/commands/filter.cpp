@@ -176,10 +176,10 @@ Compose choose_compose(Compose asked, const PassFit& fit, const std::string& bea
     what = "it has noise that they have not: it is their sum where it scatters (--compose sum)";
   else if (needs_passes && !fit.adds_up() && !fit.is_complete())
     what = "what is in none of them is lost or scattered; want --compose difference";
-  else if (chosen == Compose::automatic && fit.too_bright > 0)
-    what = "they are not of one render; where it is brighter the light is what it has";
-  else if (chosen == Compose::difference && (fit.too_bright > 0 || is_noisy))
-    what = "they are not of one render, and their noise comes into it; want --compose auto";
+  else if (chosen == Compose::automatic && fit.has_fireflies())
+    what = "there the light is what the other passes leave of it (--compose difference: as it is)";
+  else if (fit.too_bright > 0 || (chosen == Compose::difference && is_noisy))
+    what = "they are not of one render, and what they have and it has not comes into it; want passes that belong to it";
   if (!what.empty())
     messages.warn(ErrorCode::input_unsupported, beauty,
                   fmt::format("the passes are {} off it per pixel and {} on the whole, and their diffuse light is "
@@ -311,7 +311,7 @@ Outcome filter_picture(const FilterJob& job, const PictureFiles& files, FilterSe
     const std::vector<std::uint8_t> scatters = scattering_pixels(input.loaded, job.surface.profiles);
     const PassFit fit = measure_passes(parts, input.picture.width(), scatters);
     compose = choose_compose(job.compose, fit, pass_of(channels.beauty), messages);
-    if (compose == Compose::beauty || (compose == Compose::automatic && fit.too_bright > 0))
+    if (compose == Compose::beauty || (compose == Compose::automatic && fit.has_fireflies()))
       take_light_from_beauty(parts, scatters, compose == Compose::beauty, input.loaded.light);
   }
 
