@@ -191,12 +191,15 @@ Compose choose_compose(Compose asked, const PassFit& fit, const std::string& bea
 /// The beauty that the filter has changed, without what was not in the picture.
 void finish_beauty(const FilterJob& job, Compose compose, const BeautyParts& parts, const ResultChannels& channels,
                    SurfaceInput& input, std::vector<float>& beauty, Messages& messages) {
-  std::vector<float> scattered(beauty.size());
-  for (std::size_t c = 0; c < 3; ++c) {
-    const std::vector<float> plane = input.picture.plane(channels.scattered[c]);
-    for (std::size_t i = 0; i < plane.size(); ++i) scattered[3 * i + c] = plane[i];
+  Repairs repairs;
+  if (compose == Compose::sum || needs_repair(parts, beauty)) {
+    std::vector<float> scattered(beauty.size());
+    for (std::size_t c = 0; c < 3; ++c) {
+      const std::vector<float> plane = input.picture.plane(channels.scattered[c]);
+      for (std::size_t i = 0; i < plane.size(); ++i) scattered[3 * i + c] = plane[i];
+    }
+    repairs = compose_beauty(compose, parts, scattered, beauty);
   }
-  const Repairs repairs = compose_beauty(compose, parts, scattered, beauty);
   const std::string name = pass_of(channels.beauty);
   if (repairs.negative > 0)
     messages.note(fmt::format("{}: {} values came out below 0 and are 0", name, repairs.negative));

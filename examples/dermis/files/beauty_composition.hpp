@@ -73,6 +73,9 @@ struct Repairs {
   std::int64_t not_finite = 0;  ///< values that would not have been finite, and are as they were
 };
 
+/// Whether `beauty`, the difference that the filter has made of it, has values that it should not have.
+bool needs_repair(const BeautyParts& parts, const std::vector<float>& beauty);
+
 /// Puts `beauty`, which is the difference that the filter has made of it, together again where it has changed.
 /// `scattered` is the light after scattering.
 Repairs compose_beauty(Compose compose, const BeautyParts& parts, const std::vector<float>& scattered,
