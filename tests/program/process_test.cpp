@@ -96,3 +96,22 @@ TEST_CASE("first runs, which compile the kernels, say nothing") {
   run_well(filter_arguments(scene, folder / "again.exr", materials));
   CHECK(relative_l2(folder / "again.exr", folder / "out.exr", "ViewLayer.sss") == 0);
 }
+
+TEST_CASE("standard output that is full or closed is an error, also of help, and closed streams do no harm") {
+  const TemporaryFolder folder;
+  const MadeScene scene = make_scene(folder / "in.exr", "touching", 20, 10, 3);
+  const std::vector<std::string> calls = {"--version", "filter --help", "profiles",
+                                          "compare" + quoted(scene.path) + quoted(scene.path)};
+  for (const std::string& call : calls) {
+    for (const char* streams : {" >/dev/full 2>/dev/null", " >&- 2>/dev/null", " >&- 2>&- <&-"}) {
+      INFO(call << streams);
+      const std::string command = quoted(DERMIS_PROGRAM) + " " + call + streams;
+      CHECK(WEXITSTATUS(std::system(command.c_str())) == 6);
+    }
+  }
+  const std::string filter = quoted(DERMIS_PROGRAM) + " filter" + quoted(scene.path) + " -o" +
+                             quoted(folder / "out.exr") +
+                             " --mm-per-unit 1 --focal-px 60 --material 1=wax --material 77=wax >&- 2>&- <&-";
+  CHECK(WEXITSTATUS(std::system(filter.c_str())) == 0);
+  run_well({"compare", folder / "out.exr", folder / "out.exr", "--identical"});
+}

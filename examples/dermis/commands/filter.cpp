@@ -366,7 +366,7 @@ int filter_sequence(const FilterJob& job, FilterSession& session, Messages& mess
     messages.begin(input);
     try {
       if (filter_picture(job, job.pictures[i], session, messages) == Outcome::copied) ++copied;
-      if (!messages.quiet()) fmt::print(stderr, "dermis: {} of {}: {}\n", i + 1, count, outputs.output);
+      messages.progress(fmt::format("{} of {}: {}", i + 1, count, outputs.output));
     } catch (...) {
       const int its_code = report_exception(input);
       if (failed++ == 0) code = its_code;
