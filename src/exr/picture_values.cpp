@@ -38,15 +38,26 @@ std::uint16_t half_of(float value) {
 
 bool is_too_large_for_half(float value) { return std::isfinite(value) && (half_of(value) & 0x7FFFU) == 0x7C00U; }
 
-bool is_same(float a, float b) { return a == b || (std::isnan(a) && std::isnan(b)); }
+const Channel& existing(const Picture& picture, const std::string& name) {
+  const Channel* channel = picture.find(name);
+  if (channel == nullptr)
+    throw Error(ErrorCode::role_missing, "channel", escaped(name), "one of " + channel_list(picture));
+  return *channel;
+}
 
-void put(std::byte* place, Format format, float value) {
-  if (format == Format::f16) {
-    const std::uint16_t half = half_of(value);
-    std::memcpy(place, &half, sizeof half);
-  } else {
-    std::memcpy(place, &value, sizeof value);
-  }
+bool is_nan_half(std::uint16_t half) { return (half & 0x7FFFU) > 0x7C00U; }
+
+/// What is no number keeps its bits, of which there are many, if it stays none.
+void put(std::byte* place, float value) {
+  float before;
+  std::memcpy(&before, place, sizeof before);
+  if (before != value && !(std::isnan(before) && std::isnan(value))) std::memcpy(place, &value, sizeof value);
+}
+
+void put(std::byte* place, std::uint16_t half) {
+  std::uint16_t before;
+  std::memcpy(&before, place, sizeof before);
+  if (!(is_nan_half(before) && is_nan_half(half))) std::memcpy(place, &half, sizeof half);
 }
 
 }  // namespace
@@ -77,7 +88,7 @@ void Picture::make_float(std::span<const std::string> names) {
       if (half == halves.end())
         std::memcpy(place, before.data() + i * before.pixel_bytes() + from.byte_offset, bytes_of(from.format));
       else
-        put(place, Format::f32, planes[static_cast<std::size_t>(half - halves.begin())][i]);
+        std::memcpy(place, &planes[static_cast<std::size_t>(half - halves.begin())][i], sizeof(float));
     }
   }
   state_->pixels = std::move(after);
@@ -87,11 +98,9 @@ std::int64_t Picture::store(std::span<const std::string> names, std::span<const 
   const std::size_t pixels = static_cast<std::size_t>(width()) * static_cast<std::size_t>(height());
   if (values.size() != pixels * names.size())
     throw Error(ErrorCode::usage, "values", std::to_string(values.size()), std::to_string(pixels * names.size()));
-  std::vector<std::vector<float>> planes;
   std::int64_t too_large = 0;
   for (std::size_t c = 0; c < names.size(); ++c) {
-    planes.push_back(plane(names[c]));
-    const Format format = find(names[c])->format;
+    const Format format = existing(*this, names[c]).format;
     if (format == Format::u32)
       throw Error(ErrorCode::input_unsupported, escaped(names[c]), "whole numbers", "a channel of half or float");
     if (format == Format::f32) continue;
@@ -100,13 +109,14 @@ std::int64_t Picture::store(std::span<const std::string> names, std::span<const 
   if (too_large > 0 && !keeps_formats) make_float(names);
   PixelBlock& block = state_->pixels;
   for (std::size_t c = 0; c < names.size(); ++c) {
-    const Channel& channel = *block.find(names[c]);
+    const Channel& channel = existing(*this, names[c]);
     std::byte* place = block.data() + channel.byte_offset;
-    for (std::size_t i = 0; i < pixels; ++i, place += block.pixel_bytes()) {
-      const float value = values[i * names.size() + c];
-      if (is_same(value, planes[c][i])) continue;
-      const bool is_clamped = channel.format == Format::f16 && is_too_large_for_half(value);
-      put(place, channel.format, is_clamped ? std::copysign(largest_half, value) : value);
+    for (std::size_t i = c; i < values.size(); i += names.size(), place += block.pixel_bytes()) {
+      const float value = values[i];
+      if (channel.format == Format::f32)
+        put(place, value);
+      else
+        put(place, half_of(is_too_large_for_half(value) ? std::copysign(largest_half, value) : value));
     }
   }
   return too_large;

@@ -249,3 +249,19 @@ TEST_CASE("what is wrong with lights is said in one line, and nothing is written
   bare.insert(bare.end(), {"--eye", "0,0,0"});
   CHECK(run_well(bare).empty());
 }
+
+TEST_CASE("light takes the place of its input by --in-place only, and keeps a renderer's pass sss its own") {
+  const MadeSphere sphere("20x20", "2");
+  check_refused(run_program({"light", sphere.picture, "--lights", sphere.lights, "-o", sphere.picture}), 2,
+                {"--output: got", "which is the input", "--in-place"});
+  check_refused(run_program({"light", sphere.picture, "--lights", sphere.lights, "-o", sphere.folder / "x.exr",
+                             "--compression", "dwaa"}),
+                2, {"--compression: got dwaa", "ViewLayer.Position.Y"});
+  const std::vector<float> theirs(std::size_t{20} * 20, 0.25F);
+  PictureCopy(sphere.picture).with("ViewLayer.sss.R", theirs).write(sphere.picture);
+  run_well({"light", sphere.picture, "--lights", sphere.lights, "-o", sphere.picture, "--in-place"});
+  const std::string output = sphere.folder / "out.exr";
+  CHECK(run_program(sphere.filter(sphere.picture, output, {})).exit_code == 0);
+  CHECK(Picture::read(output).plane("ViewLayer.sss.R") == theirs);
+  CHECK(Picture::read(output).find("ViewLayer.sss_dermis.R") != nullptr);
+}

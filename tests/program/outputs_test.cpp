@@ -102,9 +102,13 @@ TEST_CASE("the input is replaced by --in-place only, whatever it is called") {
   CHECK(bytes_of_file(made.scene.path) == before);
   check_refused(run_program({"filter", made.scene.path, "--mm-per-unit", "1", "--profile", "wax"}), 2,
                 {"--output: got nothing", "--in-place"});
-  check_refused(run_program({"filter", made.scene.path, made.folder / "hard.exr", "-o", made.folder / ".", "--in-place",
-                             "--mm-per-unit", "1", "--profile", "wax"}),
-                2, {"--output: got "});
+  // an output that leads to another input
+  fs::create_directory(made.folder / "out");
+  fs::copy_file(made.scene.path, made.folder / "other.exr");
+  fs::create_symlink("../other.exr", made.folder / "out/in.exr");
+  check_refused(run_program({"filter", made.scene.path, made.folder / "other.exr", "-o", made.folder / "out",
+                             "--in-place", "--mm-per-unit", "1", "--profile", "wax"}),
+                2, {"--output: got ", "not the input"});
   fs::remove(made.folder / "hard.exr");
   CHECK(made.filter(made.folder / "link.exr", {"--in-place"}).exit_code == 0);
   CHECK(fs::is_symlink(made.folder / "link.exr"));

@@ -69,17 +69,50 @@ TEST_CASE("a program without its module says so when a picture is to be read") {
   CHECK(message.find('\n') == message.size() - 1);
 }
 
-TEST_CASE("the first run of all, which compiles the kernels, says nothing") {
+TEST_CASE("first runs, which compile the kernels, say nothing") {
   const TemporaryFolder folder;
   const MadeScene scene = make_scene(folder / "in.exr", "touching", 40, 30, 3);
   const std::vector<std::string> materials = {"--material", "1=skin", "--material", "2=wax"};
-  std::string command = "POCL_CACHE_DIR='" + (folder / "cache") + "'" + quoted(DERMIS_PROGRAM);
-  for (const std::string& word : filter_arguments(scene, folder / "out.exr", materials)) command += quoted(word);
-  command += " >" + quoted(folder / "stdout") + " 2>" + quoted(folder / "stderr");
+  const std::string map = folder / "map.exr";
+  const std::string lights = folder / "lights.json";
+  run_well({"scene", "sphere", "-o", folder / "sphere.exr", "--size", "30x30", "--shadow-map", map, "--lights", lights,
+            "--shadow-texels", "32"});
+  const MadeScene sphere{folder / "sphere.exr", {"--mm-per-unit", "1", "--material", "1=skin"}};
   std::filesystem::create_directory(folder / "cache");
-  CHECK(std::system(command.c_str()) == 0);
-  CHECK(bytes_of_file(folder / "stdout") == "");
-  CHECK(bytes_of_file(folder / "stderr") == "");
+  const auto run_first = [&](const std::vector<std::string>& words) {
+    std::string command = "POCL_CACHE_DIR='" + (folder / "cache") + "'" + quoted(DERMIS_PROGRAM);
+    for (const std::string& word : words) command += quoted(word);
+    INFO(command);
+    command += " >" + quoted(folder / "stdout") + " 2>" + quoted(folder / "stderr");
+    CHECK(std::system(command.c_str()) == 0);
+    CHECK(bytes_of_file(folder / "stdout") == "");
+    CHECK(bytes_of_file(folder / "stderr") == "");
+  };
+  run_first(filter_arguments(scene, folder / "out.exr", materials));
+  run_first(filter_arguments(sphere, folder / "through.exr", {"--translucency", "--lights", lights}));
+  run_first(filter_arguments(sphere, folder / "disc.exr", {"--method", "disc"}));
+  run_first(filter_arguments(sphere, folder / "exact.exr", {"--method", "exact"}));
+  run_first({"light", sphere.path, "-o", folder / "lit.exr", "--lights", lights});
+  run_first({"texture", sphere.path, "-o", folder / "texture.exr", "--profile", "skin", "--mm-per-texel", "1"});
   run_well(filter_arguments(scene, folder / "again.exr", materials));
   CHECK(relative_l2(folder / "again.exr", folder / "out.exr", "ViewLayer.sss") == 0);
+}
+
+TEST_CASE("standard output that is full or closed is an error, also of help, and closed streams do no harm") {
+  const TemporaryFolder folder;
+  const MadeScene scene = make_scene(folder / "in.exr", "touching", 20, 10, 3);
+  const std::vector<std::string> calls = {"--version", "filter --help", "profiles",
+                                          "compare" + quoted(scene.path) + quoted(scene.path)};
+  for (const std::string& call : calls) {
+    for (const char* streams : {" >/dev/full 2>/dev/null", " >&- 2>/dev/null", " >&- 2>&- <&-"}) {
+      INFO(call << streams);
+      const std::string command = quoted(DERMIS_PROGRAM) + " " + call + streams;
+      CHECK(WEXITSTATUS(std::system(command.c_str())) == 6);
+    }
+  }
+  const std::string filter = quoted(DERMIS_PROGRAM) + " filter" + quoted(scene.path) + " -o" +
+                             quoted(folder / "out.exr") +
+                             " --mm-per-unit 1 --focal-px 60 --material 1=wax --material 77=wax >&- 2>&- <&-";
+  CHECK(WEXITSTATUS(std::system(filter.c_str())) == 0);
+  run_well({"compare", folder / "out.exr", folder / "out.exr", "--identical"});
 }

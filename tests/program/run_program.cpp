@@ -115,9 +115,11 @@ void check_refused(const Outcome& outcome, int exit_code, const std::vector<std:
   INFO("stderr: " << outcome.errors);
   CHECK(outcome.exit_code == exit_code);
   CHECK(outcome.output.empty());
-  // A run that takes long has said how far it is before, "dermis: 10 %".
+  // A run has said before what it took, and one that takes long how far it is, "dermis: 10 %".
   std::string error = outcome.errors;
-  while (error.rfind("dermis: ", 0) == 0 && error.find(" %\n") < error.find('\n')) error.erase(0, error.find('\n') + 1);
+  while (error.starts_with("dermis: note: ") ||
+         (error.starts_with("dermis: ") && error.find(" %\n") < error.find('\n')))
+    error.erase(0, error.find('\n') + 1);
   CHECK(error.substr(0, 15) == "dermis: error: ");
   CHECK(std::count(error.begin(), error.end(), '\n') == 1);
   for (const std::string& part : parts) {

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <system_error>
 #include <utility>
 
 #include "arguments/word_argument.hpp"
@@ -39,7 +40,8 @@ void check_standard_output(const OutputArguments& arguments) {
 /// A folder stands for files in it. A single picture may have a file of its own, for which a folder of such a name is
 /// in the way.
 std::string path_for(const std::string& input, const Output& output, const std::string& path, std::size_t inputs) {
-  const bool is_folder = fs::is_directory(path);
+  std::error_code ignored;
+  const bool is_folder = fs::is_directory(path, ignored);
   if (inputs > 1 && !is_folder)
     throw Error(ErrorCode::usage, output.argument, path, fmt::format("a folder that exists, for {} pictures", inputs));
   if (!is_folder || (inputs == 1 && fs::path(path).extension() == output.ending)) return path;

@@ -78,10 +78,8 @@ MethodPicture by_rule_2012(const std::vector<Material>& materials, const Frame& 
 /// samples, and by the exact method. `frame` is of raw light and with albedo. Says on stderr what it works on.
 std::vector<MethodPicture> picture_methods(const Device& device, const std::vector<Material>& materials,
                                            const Frame& frame, const LoadedFrame& loaded, std::vector<float> beauty,
-                                           const Options& options, const Messages& messages) {
-  const auto say = [&](const std::string& name) {
-    if (!messages.quiet()) fmt::print(stderr, "dermis: comparing: {}\n", name);
-  };
+                                           const Options& options, Messages& messages) {
+  const auto say = [&](const std::string& name) { messages.progress("comparing: " + name); };
   const auto with = [&](Method method, int rank) {
     Options its = options;
     its.method = method;

@@ -18,6 +18,7 @@
 #include "commands/filter_job.hpp"
 #include "commands/filter_session.hpp"
 #include "commands/input_report.hpp"
+#include "commands/result_channels.hpp"
 #include "commands/surface_input.hpp"
 #include "dermis/error.hpp"
 #include "dermis/version.hpp"
@@ -25,7 +26,6 @@
 #include "files/lossy_channels.hpp"
 #include "files/other_passes.hpp"
 #include "files/output_file.hpp"
-#include "files/pass_channels.hpp"
 #include "files/picture_png.hpp"
 #include "files/picture_roles.hpp"
 #include "report/messages.hpp"
@@ -38,73 +38,6 @@ namespace dermis::program {
 namespace {
 
 using exr::Role;
-
-/// The channels of the beauty, in place; empty if there is none.
-std::vector<std::string> beauty_channels(const exr::Roles& roles) {
-  if (!roles.has(Role::beauty)) return {};
-  const exr::ChannelSum& sum = roles[Role::beauty];
-  if (sum.size() != 1 || sum.front().size() != 3)
-    throw Error(ErrorCode::usage, "--role beauty", fmt::format("{} groups of channels", sum.size()),
-                "one group of three, for the result takes its place");
-  return sum.front();
-}
-
-/// The attribute that names the passes of scattered light, so that the next run knows it for its own.
-constexpr const char* scattered_attribute = "dermis:scattered";
-
-std::string pass_of(const std::vector<std::string>& channels) {
-  return channels.front().substr(0, channels.front().rfind('.'));
-}
-
-/// A file of dermis before there was the attribute has its pass under the first name.
-bool is_own_pass(const exr::Picture& picture, const std::string& pass, bool is_first) {
-  const std::string own = picture.text_attribute(scattered_attribute).value_or("");
-  if (own.empty()) return is_first && picture.text_attribute("dermis:version").has_value();
-  return (", " + own + ", ").find(", " + pass + ", ") != std::string::npos;
-}
-
-/// The channels for the scattered light: "sss", or another pass if the renderer has one of that name.
-std::vector<std::string> scattered_channels(const SurfaceInput& input, Messages& messages) {
-  const exr::Picture& picture = input.picture;
-  const auto is_there = [&](const std::string& name) { return picture.find(name) != nullptr; };
-  std::string taken;
-  for (int number = 1;; ++number) {
-    const std::string name = number == 1 ? "sss" : number == 2 ? "sss_dermis" : fmt::format("sss_dermis{}", number);
-    std::vector<std::string> channels = channels_of_pass(input.roles, name);
-    const std::string pass = pass_of(channels);
-    if (std::none_of(channels.begin(), channels.end(), is_there)) {
-      if (!taken.empty()) messages.note(fmt::format("{}: this pass is the renderer's; ours is {}", taken, pass));
-      return channels;
-    }
-    if (is_own_pass(picture, pass, number == 1)) {
-      messages.warn(ErrorCode::input_unsupported, channels.front(),
-                    "is there already, from dermis; if the beauty holds scattered light, it is scattered again");
-      return channels;
-    }
-    if (taken.empty()) taken = pass;
-  }
-}
-
-/// The channels of the result.
-struct ResultChannels {
-  std::vector<std::string> scattered;
-  std::vector<std::string> beauty;   ///< or none
-  std::vector<std::string> written;  ///< none stands for all
-};
-
-ResultChannels result_channels(OutputLayers layers, const SurfaceInput& input, Messages& messages) {
-  ResultChannels channels{scattered_channels(input, messages), beauty_channels(input.roles), {}};
-  if (layers == OutputLayers::all) return channels;
-  channels.written = channels.scattered;
-  if (layers == OutputLayers::sss) return channels;
-  for (const std::string& name : channels.beauty) {
-    channels.written.push_back(name);
-    // The alpha belongs to the beauty, whose colours are premultiplied by it.
-    const std::string alpha = name.substr(0, name.rfind('.') + 1) + "A";
-    if (input.picture.find(alpha) != nullptr) channels.written.push_back(alpha);
-  }
-  return channels;
-}
 
 /// The frame: what was loaded, the scattered light in the picture's own pixels, and the beauty in `beauty`.
 Frame frame_of(SurfaceInput& input, double mm_per_unit, const ResultChannels& channels, std::vector<float>& beauty) {
@@ -173,10 +106,10 @@ Compose choose_compose(Compose asked, const PassFit& fit, const std::string& bea
     what = "it has noise that they have not: it is their sum where it scatters (--compose sum)";
   else if (needs_passes && !fit.adds_up() && !fit.is_complete())
     what = "what is in none of them is lost or scattered; want --compose difference";
-  else if (chosen == Compose::automatic && fit.too_bright > 0)
-    what = "they are not of one render; where it is brighter the light is what it has";
-  else if (chosen == Compose::difference && (fit.too_bright > 0 || is_noisy))
-    what = "they are not of one render, and their noise comes into it; want --compose auto";
+  else if (chosen == Compose::automatic && fit.has_fireflies())
+    what = "there the light is what the other passes leave of it (--compose difference: as it is)";
+  else if (fit.too_bright > 0 || (chosen == Compose::difference && is_noisy))
+    what = "they are not of one render, and what they have and it has not comes into it; want passes that belong to it";
   if (!what.empty())
     messages.warn(ErrorCode::input_unsupported, beauty,
                   fmt::format("the passes are {} off it per pixel and {} on the whole, and their diffuse light is "
@@ -188,12 +121,15 @@ Compose choose_compose(Compose asked, const PassFit& fit, const std::string& bea
 /// The beauty that the filter has changed, without what was not in the picture.
 void finish_beauty(const FilterJob& job, Compose compose, const BeautyParts& parts, const ResultChannels& channels,
                    SurfaceInput& input, std::vector<float>& beauty, Messages& messages) {
-  std::vector<float> scattered(beauty.size());
-  for (std::size_t c = 0; c < 3; ++c) {
-    const std::vector<float> plane = input.picture.plane(channels.scattered[c]);
-    for (std::size_t i = 0; i < plane.size(); ++i) scattered[3 * i + c] = plane[i];
+  Repairs repairs;
+  if (compose == Compose::sum || needs_repair(parts, beauty)) {
+    std::vector<float> scattered(beauty.size());
+    for (std::size_t c = 0; c < 3; ++c) {
+      const std::vector<float> plane = input.picture.plane(channels.scattered[c]);
+      for (std::size_t i = 0; i < plane.size(); ++i) scattered[3 * i + c] = plane[i];
+    }
+    repairs = compose_beauty(compose, parts, scattered, beauty);
   }
-  const Repairs repairs = compose_beauty(compose, parts, scattered, beauty);
   const std::string name = pass_of(channels.beauty);
   if (repairs.negative > 0)
     messages.note(fmt::format("{}: {} values came out below 0 and are 0", name, repairs.negative));
@@ -288,7 +224,7 @@ ViewResult filter_view(const FilterJob& job, const PictureFiles& files, SurfaceI
     const std::vector<std::uint8_t> scatters = scattering_pixels(input.loaded, job.surface.profiles);
     const PassFit fit = measure_passes(parts, input.picture.width(), scatters);
     compose = choose_compose(job.compose, fit, pass_of(channels.beauty), messages);
-    if (compose == Compose::beauty || (compose == Compose::automatic && fit.too_bright > 0))
+    if (compose == Compose::beauty || (compose == Compose::automatic && fit.has_fireflies()))
       take_light_from_beauty(parts, scatters, compose == Compose::beauty, input.loaded.light);
   }
 
@@ -411,7 +347,7 @@ int filter_sequence(const FilterJob& job, FilterSession& session, Messages& mess
     messages.begin(input);
     try {
       if (filter_picture(job, job.pictures[i], session, messages) == Outcome::copied) ++copied;
-      if (!messages.quiet()) fmt::print(stderr, "dermis: {} of {}: {}\n", i + 1, count, outputs.output);
+      messages.progress(fmt::format("{} of {}: {}", i + 1, count, outputs.output));
     } catch (...) {
       const int its_code = report_exception(input);
       if (failed++ == 0) code = its_code;

@@ -22,6 +22,7 @@
 #include "dermis/shading.hpp"
 #include "dermis/version.hpp"
 #include "files/lights_file.hpp"
+#include "files/lossy_channels.hpp"
 #include "files/output_file.hpp"
 #include "files/pass_channels.hpp"
 #include "files/picture_roles.hpp"
@@ -88,6 +89,7 @@ int run_light(const LightArguments& arguments) {
   exr::Picture picture = exr::Picture::read(arguments.path);
   const exr::Roles roles = roles_of(picture, arguments.path, arguments.picture);
   for (const Role role : {Role::position, Role::normal, Role::albedo}) exr::require(picture, roles, role);
+  check_compression(arguments.compression, picture, roles, {});
   const Viewer viewer = viewer_of(arguments, picture, roles);
   const std::vector<float> position = exr::load(picture, roles, Role::position);
   const std::vector<float> normal = exr::load(picture, roles, Role::normal);

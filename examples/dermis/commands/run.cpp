@@ -1,6 +1,7 @@
 // The program but for main(): it reads the command line, runs one subcommand, and turns errors into exit codes.
 #include "commands/run.hpp"
 
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -29,7 +30,7 @@ int fail(ErrorCode code, std::string_view message) {
 }
 
 int finish(int code) {
-  if (std::fflush(stdout) != 0)
+  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
     return fail(ErrorCode::output, "standard output: got a write error, want all of it out");
   return code;
 }
@@ -93,6 +94,15 @@ void end_by_signal(int number) {
   raise(number);  // whose handler was reset to that of the system
 }
 
+/// A stream that the caller has closed would become that of the next file that is opened. Writing to it fails.
+void fill_closed_streams() {
+  for (int file = open("/dev/null", O_RDONLY); file >= 0; file = open("/dev/null", O_RDONLY)) {
+    if (file <= STDERR_FILENO) continue;
+    close(file);
+    break;
+  }
+}
+
 int parse_and_run_safely(int argc, char** argv) {
   try {
     return parse_and_run(argc, argv);
@@ -119,6 +129,7 @@ void handle_signals() {
 int run(int argc, char** argv) {
   // PoCL would otherwise hide integer divisions by zero of the host program. It reads this at the first OpenCL call.
   setenv("POCL_SIGFPE_HANDLER", "0", 0);
+  fill_closed_streams();
   handle_signals();
   std::atexit(end_of_process);
   is_running = true;

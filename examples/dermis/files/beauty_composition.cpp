@@ -125,6 +125,16 @@ void take_light_from_beauty(const BeautyParts& parts, const std::vector<std::uin
   }
 }
 
+bool needs_repair(const BeautyParts& parts, const std::vector<float>& beauty) {
+  for (std::size_t i = 0; i < beauty.size(); ++i) {
+    const double before = parts.before[i];
+    if (beauty[i] == parts.before[i] || !std::isfinite(before)) continue;
+    if (!(beauty[i] >= 0 || before < 0) || !std::isfinite(beauty[i]) || is_too_bright(diffuse_before(parts, i), before))
+      return true;
+  }
+  return false;
+}
+
 Repairs compose_beauty(Compose compose, const BeautyParts& parts, const std::vector<float>& scattered,
                        std::vector<float>& beauty) {
   Repairs repairs;

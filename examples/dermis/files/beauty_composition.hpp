@@ -33,6 +33,9 @@ struct PassFit {
   /// The passes add up to the beauty, pixel by pixel.
   bool adds_up() const { return off <= 0.02; }
 
+  /// Some pixels are too bright, but no more than fireflies are. If more are, the passes are of another picture.
+  bool has_fireflies() const { return too_bright > 0 && 100 * too_bright <= pixels; }
+
   /// They do but for noise: nothing is missing on the whole or in a place.
   bool is_complete() const {
     constexpr double of_mean = 0.01;
@@ -56,7 +59,7 @@ PassFit measure_passes(const BeautyParts& parts, int width, const std::vector<st
 
 /// If the passes are complete but do not add up pixel by pixel, there is noise in them or in the beauty, which a
 /// difference would bring in: the way that takes the light from the smoother one. Else `automatic`: a difference, which
-/// keeps what is in no pass, with no more light anywhere than the beauty has.
+/// keeps what is in no pass, and takes the light of fireflies from the beauty.
 Compose choose_composition(const PassFit& fit);
 
 /// Puts what the other passes leave of the beauty in place of the light: everywhere, or where the light is too bright.
@@ -69,6 +72,9 @@ struct Repairs {
   std::int64_t negative = 0;    ///< values that would have come to be below 0, and are 0
   std::int64_t not_finite = 0;  ///< values that would not have been finite, and are as they were
 };
+
+/// Whether `beauty`, the difference that the filter has made of it, has values that it should not have.
+bool needs_repair(const BeautyParts& parts, const std::vector<float>& beauty);
 
 /// Puts `beauty`, which is the difference that the filter has made of it, together again where it has changed.
 /// `scattered` is the light after scattering.

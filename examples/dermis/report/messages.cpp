@@ -22,9 +22,10 @@ std::string one_line(std::string_view message) {
   return line;
 }
 
-void print_line(std::string_view kind, std::string_view message) {
+void print_line(std::string_view message) {
   std::fflush(stdout);
-  fmt::print(stderr, "dermis: {}: {}\n", kind, one_line(message));
+  // fmt::print would throw if nobody can be told.
+  std::fputs(fmt::format("dermis: {}\n", one_line(message)).c_str(), stderr);
 }
 
 /// A device that fails may do so because PoCL cannot keep what it compiles, which it does not say.
@@ -46,17 +47,21 @@ void Messages::begin(std::string file) {
 }
 
 void Messages::note(std::string text) {
-  if (said_.insert(text).second && !arguments_.quiet) print_line("note", text);
+  if (said_.insert(text).second && !arguments_.quiet) print_line("note: " + text);
   notes_.push_back(std::move(text));
 }
 
 void Messages::warn(ErrorCode code, std::string_view subject, std::string_view text) {
   if (arguments_.strict) throw Error(code, fmt::format("{}: {}", file_, subject), text, "no warning, with --strict");
   warnings_.push_back(fmt::format("{}: {}", subject, text));
-  print_line("warning", fmt::format("{}: {}", file_, warnings_.back()));
+  print_line(fmt::format("warning: {}: {}", file_, warnings_.back()));
 }
 
-void print_error(std::string_view message) { print_line("error", message); }
+void Messages::progress(std::string_view text) const {
+  if (!arguments_.quiet) print_line(text);
+}
+
+void print_error(std::string_view message) { print_line(fmt::format("error: {}", message)); }
 
 int report_exception(std::string_view file) {
   try {

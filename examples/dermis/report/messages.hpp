@@ -31,6 +31,9 @@ class Messages {
   /// Error(code) that names file and subject, so warnings come before anything is written.
   void warn(ErrorCode code, std::string_view subject, std::string_view text);
 
+  /// "dermis: TEXT": how far a run of several steps is.
+  void progress(std::string_view text) const;
+
   /// Of the file, as printed, without the words before.
   const std::vector<std::string>& notes() const { return notes_; }
   const std::vector<std::string>& warnings() const { return warnings_; }

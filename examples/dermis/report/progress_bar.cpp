@@ -34,7 +34,7 @@ void ProgressBar::draw(int percent, const std::string& what) {
   last_what_ = what;
   drawn_ = true;
   const std::string filled(static_cast<std::size_t>(percent * width / 100), '#');
-  fmt::print(stderr, "\r\033[K[{:<{}}] {:3} %{}", filled, width, percent, what);
+  std::fputs(fmt::format("\r\033[K[{:<{}}] {:3} %{}", filled, width, percent, what).c_str(), stderr);
   std::fflush(stderr);
 }
 
@@ -44,7 +44,7 @@ void ProgressBar::print_line(int percent, const std::string& what) {
   if (percent / 10 == last_percent_ / 10 && now - last_line_ < seconds(10)) return;
   last_percent_ = percent;
   last_line_ = now;
-  fmt::print(stderr, "{}: {} %{}\n", program_, percent, what);
+  std::fputs(fmt::format("{}: {} %{}\n", program_, percent, what).c_str(), stderr);
 }
 
 }  // namespace dermis::program
