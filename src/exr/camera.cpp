@@ -118,7 +118,7 @@ void add_depth(const Picture& picture, const Roles& roles, const CameraHint& hin
     if (hint.depth_type) {
       found.depth_type = *hint.depth_type;
     } else {
-      check_unknown_depth(load(picture, roles, Role::depth), roles.has(Role::position));
+      check_unknown_depth(load(picture, roles, Role::depth));
     }
   } else if (roles.has(Role::position)) {
     if (matrices) found.axis = axis_of_positions(picture, load(picture, roles, Role::position), *matrices);

@@ -62,7 +62,7 @@ void convert(std::vector<float>& depth, int width, const Camera& camera, const D
   }
 }
 
-void check_unknown_depth(std::span<const float> depth, bool has_positions) {
+void check_unknown_depth(std::span<const float> depth) {
   float least = HUGE_VALF;
   float most = -HUGE_VALF;
   for (const float value : depth) {
@@ -73,7 +73,6 @@ void check_unknown_depth(std::span<const float> depth, bool has_positions) {
   if (least > most) return;  // Nothing is there to be wrong.
   const std::string range = short_text(least) + " to " + short_text(most);
   if (most < 0) refuse("only negative depths, " + range);
-  if (least == most && !has_positions) refuse("one depth alone, " + short_text(least));
   if (least >= 0 && most <= 1 && least < most) refuse("depths that may be normalised, " + range);
 }
 

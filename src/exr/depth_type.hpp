@@ -19,8 +19,8 @@ float unfolded(float value, const DepthType& type);
 /// Changes values as they are in a file to depth along the view axis; `width` is that of the picture.
 void convert(std::vector<float>& depth, int width, const Camera& camera, const DepthType& type);
 
-/// Throws Error(role_missing) if these depths cannot be distances along the view axis, scene units: all negative, all
-/// in 0..1 as normalised ones are, or all the same.
-void check_unknown_depth(std::span<const float> depth, bool has_positions);
+/// Throws Error(role_missing) if these depths cannot be distances along the view axis, scene units: all negative,
+/// or all in 0..1 as normalised ones are.
+void check_unknown_depth(std::span<const float> depth);
 
 }  // namespace dermis::exr

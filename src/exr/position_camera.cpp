@@ -316,12 +316,9 @@ class Finding {
     const bool is_terraced = !coarseness(picture_, roles_[Role::depth]).empty() && coarse_position_.empty();
     if (is_terraced && fit_->share >= 0.9) out.axis = axis();
     if (out.axis) return;
-    const bool is_plain = out.depth_type == DepthType{};
-    if (!is_plain && (!told_ || *told_ != out.depth_type))
-      out.warnings.push_back(name + " is not depth along the view axis, but " + text_of(out.depth_type) +
-                             ", by the positions");
-    if (told_ && is_plain && *told_ != out.depth_type)
-      out.warnings.push_back("--depth-type " + text_of(*told_) + ": the positions say z, which is used");
+    if (told_ && *told_ != out.depth_type)
+      out.warnings.push_back("--depth-type " + text_of(*told_) + ": the positions say that " + name + " is " +
+                             text_of(out.depth_type) + ", which is used");
   }
 
   /// Depths of parallel rays are those along the axis and a constant. In which of two directions the axis leads, depths

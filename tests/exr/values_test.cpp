@@ -105,7 +105,7 @@ TEST_CASE("channels that become float leave the others as they are") {
 
 TEST_CASE("a text attribute can be read again") {
   Picture picture = picture_of(Format::f32, 1);
-  CHECK(picture.text_attribute("dermis:version").empty());
+  CHECK_FALSE(picture.text_attribute("dermis:version"));
   picture.set_attribute("dermis:version", "1");
   CHECK(picture.text_attribute("dermis:version") == "1");
 }

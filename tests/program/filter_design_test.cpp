@@ -295,7 +295,7 @@ TEST_CASE("a material that no pixel has does not ask for a design") {
                                                        {"--material", "1=skin", "--material", "77=burley:2/1/0.5",
                                                         "--tolerance", "0.05", "--stats-json", folder / "stats.json"}));
   CHECK(outcome.exit_code == 0);
-  CHECK(outcome.errors == "dermis: warning: " + scene.path + ": --material 77: no pixel has this id\n");
+  CHECK(outcome.errors == "dermis: warning: " + scene.path + ": --material 77: no pixel is of this material\n");
   std::ifstream file(folder / "stats.json");
   const json stats = json::parse(file);
   CHECK(stats["materials"][0]["design"]["predicted_rel_l2"] <= 0.05);

@@ -451,7 +451,7 @@ TEST_CASE("a material that no pixel has is a warning") {
   const Outcome outcome =
       run_program(filter_arguments(scene, folder / "out.exr", {"--material", "1=skin", "--material", "77=wax"}));
   CHECK(outcome.exit_code == 0);
-  CHECK(outcome.errors == "dermis: warning: " + scene.path + ": --material 77: no pixel has this id\n");
+  CHECK(outcome.errors == "dermis: warning: " + scene.path + ": --material 77: no pixel is of this material\n");
 }
 
 TEST_CASE("light that is not a number stays where it is, with a warning") {

@@ -36,7 +36,7 @@ struct Talkative {
   }
 
   std::string note() const { return "ViewLayer.sss: this pass is the renderer's; ours is ViewLayer.sss_dermis"; }
-  std::string warning() const { return "--material 77: no pixel has this id"; }
+  std::string warning() const { return "--material 77: no pixel is of this material"; }
 };
 
 }  // namespace
@@ -59,7 +59,7 @@ TEST_CASE("--quiet leaves the warnings, --strict makes them errors before anythi
   fs::remove(call.folder / "out.exr");
   fs::remove(call.folder / "stats.json");
   const Outcome strict = call.filter({"--strict", "--quiet"});
-  check_refused(strict, 5, {call.scene.path + ": --material 77: got no pixel has this id", "--strict"});
+  check_refused(strict, 5, {call.scene.path + ": --material 77: got no pixel is of this material", "--strict"});
   CHECK_FALSE(fs::exists(call.folder / "out.exr"));
   CHECK_FALSE(fs::exists(call.folder / "stats.json"));
 }

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <sstream>
 #include <stdexcept>
 
 #include "commands/run.hpp"
@@ -100,8 +101,13 @@ Outcome run_program(const std::vector<std::string>& arguments, const Surrounding
       recv(server, &status, sizeof(status), 0) != sizeof(status)) {
     throw std::runtime_error("the program could not be run");
   }
-  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, bytes_of_file(folder / "stdout"),
-          bytes_of_file(folder / "stderr")};
+  Outcome outcome{WIFEXITED(status) ? WEXITSTATUS(status) : -1, bytes_of_file(folder / "stdout"), {}, {}};
+  std::istringstream errors(bytes_of_file(folder / "stderr"));
+  for (std::string line; std::getline(errors, line);) {
+    const bool is_input = line.starts_with("dermis: input: ");
+    (is_input ? outcome.input : outcome.errors) += line + (errors.eof() ? "" : "\n");
+  }
+  return outcome;
 }
 
 std::string run_well(const std::vector<std::string>& arguments) {
@@ -115,11 +121,9 @@ void check_refused(const Outcome& outcome, int exit_code, const std::vector<std:
   INFO("stderr: " << outcome.errors);
   CHECK(outcome.exit_code == exit_code);
   CHECK(outcome.output.empty());
-  // A run has said before what it took, and one that takes long how far it is, "dermis: 10 %".
+  // A run that takes long has said how far it is before, "dermis: 10 %".
   std::string error = outcome.errors;
-  while (error.starts_with("dermis: note: ") ||
-         (error.starts_with("dermis: ") && error.find(" %\n") < error.find('\n')))
-    error.erase(0, error.find('\n') + 1);
+  while (error.rfind("dermis: ", 0) == 0 && error.find(" %\n") < error.find('\n')) error.erase(0, error.find('\n') + 1);
   CHECK(error.substr(0, 15) == "dermis: error: ");
   CHECK(std::count(error.begin(), error.end(), '\n') == 1);
   for (const std::string& part : parts) {

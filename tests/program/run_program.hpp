@@ -7,7 +7,8 @@
 struct Outcome {
   int exit_code;
   std::string output;  // stdout
-  std::string errors;  // stderr
+  std::string errors;  // stderr, without the lines of `input`
+  std::string input;   // the lines "dermis: input: ..." of stderr: what was taken from the picture
 };
 
 struct Surroundings {

@@ -189,6 +189,7 @@ ViewResult copy_view(const FilterJob& job, SurfaceInput& input, FilterSession& s
       .camera = input.camera,
       .roles = input.roles,
       .materials = report_materials(job, std::vector<MaterialPixels>(job.surface.profiles.size()), nullptr),
+      .input = {},
       .notes = {},
       .warnings = {}};
   result.light = std::move(input.loaded.light);
@@ -255,6 +256,7 @@ ViewResult filter_view(const FilterJob& job, const PictureFiles& files, SurfaceI
            .camera = input.camera,
            .roles = input.roles,
            .materials = report_materials(job, pixels, plan),
+           .input = {},
            .notes = {},
            .warnings = {}},
           files.outputs.tile_map.empty() ? std::vector<float>() : std::move(input.loaded.light)};
@@ -321,6 +323,7 @@ Outcome filter_picture(const FilterJob& job, const PictureFiles& files, FilterSe
   for (ViewResult& result : results) {
     result.report.times.write_ms = write_ms;
     result.report.times.total_ms = whole.lap_ms();
+    result.report.input = messages.inputs();
     result.report.notes = messages.notes();
     result.report.warnings = messages.warnings();
     if (!files.outputs.tile_map.empty()) fmt::print("{}", legend_of(result.report.stats.tiles));

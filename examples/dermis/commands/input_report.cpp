@@ -68,8 +68,8 @@ void report_material(const NamedProfile& named, const MaterialPixels& pixels, co
   }
   const double median_px = radius_mm / *pixels.pixel_mm;
   const double largest_px = radius_mm / pixels.finest_pixel_mm.value_or(*pixels.pixel_mm);
-  messages.note(fmt::format("{} {}: {} pixels, kernel radius {:.3g} px in the median, {:.3g} px at most", name,
-                            named.text, pixels.pixels, median_px, largest_px));
+  messages.input(fmt::format("{} {}: {} pixels, kernel radius {:.3g} px in the median, {:.3g} px at most", name,
+                             named.text, pixels.pixels, median_px, largest_px));
   const int side_px = std::max(input.picture.width(), input.picture.height());
   if (largest_px < smallest_radius_px)
     messages.warn(
@@ -113,10 +113,10 @@ void report_input(const SurfaceInput& input, const SurfaceRequest& request, cons
                   const LeftOut& left_out, Messages& messages) {
   const std::string place = (input.roles.layer.empty() ? "" : " of layer " + input.roles.layer) +
                             (input.roles.view.empty() ? "" : " of view " + input.roles.view);
-  messages.note(fmt::format("channels{}: {}", place, text_of_roles(input)));
-  messages.note(fmt::format("camera: {}", text_of(input.camera)));
+  messages.input(fmt::format("channels{}: {}", place, text_of_roles(input)));
+  messages.input(fmt::format("camera: {}", text_of(input.camera)));
   for (std::size_t i = 0; i < pixels.size(); ++i) report_material(request.profiles[i], pixels[i], input, messages);
-  if (const std::string text = text_of(left_out); !text.empty()) messages.note("left out: " + text);
+  if (const std::string text = text_of(left_out); !text.empty()) messages.input("left out: " + text);
   if (left_out.bad_beauty > 0)
     messages.warn(ErrorCode::input_unsupported, "beauty",
                   fmt::format("{} pixels are not finite; they stay as they are", left_out.bad_beauty));

@@ -21,7 +21,7 @@ struct LeftOut {
 
 LeftOut count_left_out(const SurfaceInput& input, const SurfaceRequest& request);
 
-/// Notes which channels play which role and by which rule, where the camera comes from, how large each material and its
+/// Says which channels play which role and by which rule, where the camera comes from, how large each material and its
 /// kernel are on the picture, and what was left out. Warns of what looks wrong: kernels that are smaller than half a
 /// pixel or larger than the picture, a material that is all background, light that is taken for raw though nothing says
 /// so.

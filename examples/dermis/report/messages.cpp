@@ -42,8 +42,14 @@ int report(ErrorCode code, std::string_view file, std::string_view message) {
 
 void Messages::begin(std::string file) {
   file_ = std::move(file);
+  input_.clear();
   notes_.clear();
   warnings_.clear();
+}
+
+void Messages::input(std::string text) {
+  if (said_.insert(text).second && !arguments_.quiet) print_line("input: " + text);
+  input_.push_back(std::move(text));
 }
 
 void Messages::note(std::string text) {

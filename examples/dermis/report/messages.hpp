@@ -24,6 +24,10 @@ class Messages {
   /// What follows is about this file; `notes` and `warnings` begin anew.
   void begin(std::string file);
 
+  /// "dermis: input: TEXT", for what was taken from a picture and by which rule. What was said of a file before is not
+  /// said again of the next one.
+  void input(std::string text);
+
   /// "dermis: note: TEXT". What was said of a file before is not said again of the next one.
   void note(std::string text);
 
@@ -35,6 +39,7 @@ class Messages {
   void progress(std::string_view text) const;
 
   /// Of the file, as printed, without the words before.
+  const std::vector<std::string>& inputs() const { return input_; }
   const std::vector<std::string>& notes() const { return notes_; }
   const std::vector<std::string>& warnings() const { return warnings_; }
 
@@ -43,6 +48,7 @@ class Messages {
  private:
   MessageArguments arguments_;
   std::string file_;
+  std::vector<std::string> input_;
   std::vector<std::string> notes_;
   std::vector<std::string> warnings_;
   std::set<std::string> said_;

@@ -132,6 +132,7 @@ json json_of(const StatsReport& report) {
                  {"camera", program::json_of(report.camera)},
                  {"roles", program::json_of(report.roles)},
                  {"materials", json::array()},
+                 {"input", report.input},
                  {"notes", report.notes},
                  {"warnings", report.warnings}};
   object["tiles"] = {{"total", stats.tiles.kinds.size()}};
