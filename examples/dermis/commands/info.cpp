@@ -231,6 +231,7 @@ int run_info(const InfoArguments& arguments) {
   Info info{exr::Picture::read(arguments.path), {}, {}, {}, {}, 0, {}};
   info.roles = exr::find_roles(info.picture, arguments.picture.roles, arguments.picture.layer);
   find_camera(info, arguments.picture.camera);
+  if (info.camera) fmt::print(stderr, "{}", program::warnings_of(*info.camera, without_folders(arguments.path)));
   find_surfaces(info, profiles, arguments.picture.mm_per_unit);
   info.memory = find_memory(info, profiles);
   fmt::print("{}", arguments.json ? json_text_of(info, arguments.path) : text_of(info, arguments.path));

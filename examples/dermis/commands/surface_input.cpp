@@ -7,6 +7,7 @@
 
 #include "arguments/profile_argument.hpp"
 #include "files/surface_pixels.hpp"
+#include "report/role_text.hpp"
 
 namespace dermis::program {
 namespace {
@@ -48,8 +49,7 @@ SurfaceInput read_surface(const std::string& path, const SurfaceRequest& request
   auto images = std::async(std::launch::async,
                            [&] { return load_images(picture, input.roles, request.profiles, request.cryptomatte); });
   input.camera = exr::find_camera(picture, input.roles, request.picture.camera);
-  for (const std::string& warning : input.camera.warnings)
-    fmt::print(stderr, "dermis: warning: {}: {}\n", without_folders(path), warning);
+  fmt::print(stderr, "{}", warnings_of(input.camera, without_folders(path)));
   input.loaded = images.get();
   input.loaded.depth = load_depth_image(picture, input.roles, input.camera);
   if (request.lights) input.translucency = load_translucency_images(picture, input.roles);
