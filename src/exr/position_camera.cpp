@@ -3,9 +3,9 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <span>
 #include <utility>
 
+#include "exr/depth_line.hpp"
 #include "exr/depth_type.hpp"
 #include "exr/median.hpp"
 #include "exr/message_text.hpp"
@@ -94,45 +94,6 @@ class Search {
   const SeenPoints& points_;
   Rows all_;
 };
-
-/// Depths against what the camera says they should be: depth = offset + factor expected.
-struct Line {
-  double offset = 0;
-  double factor = 0;
-  double off = 0;  ///< median of the relative errors of the expected values
-};
-
-/// Through the middles of the nearer and of the farther half, then through what is near it.
-Line line_through(const std::vector<double>& expected, std::span<const float> depth) {
-  std::vector<std::size_t> rows;
-  for (std::size_t i = 0; i < depth.size(); ++i) rows.push_back(i);
-  Line line;
-  for (int pass = 0; pass < 10; ++pass) {
-    double n = 0, x = 0, y = 0, xx = 0, xy = 0;
-    for (const std::size_t i : rows) {
-      n += 1;
-      x += expected[i];
-      y += static_cast<double>(depth[i]);
-    }
-    for (const std::size_t i : rows) {
-      xx += (expected[i] - x / n) * (expected[i] - x / n);
-      xy += (expected[i] - x / n) * (static_cast<double>(depth[i]) - y / n);
-    }
-    line.factor = xx > 0 ? xy / xx : 0;
-    line.offset = y / n - line.factor * x / n;
-    std::vector<double> errors;
-    for (std::size_t i = 0; i < depth.size(); ++i)
-      errors.push_back(std::abs(line.offset + line.factor * expected[i] - static_cast<double>(depth[i])));
-    const double typical = median(errors);
-    rows.clear();
-    for (std::size_t i = 0; i < depth.size(); ++i)
-      if (errors[i] <= 2 * typical) rows.push_back(i);
-    std::vector<double> scales;
-    for (std::size_t i = 0; i < depth.size(); ++i) scales.push_back(std::abs(line.factor * expected[i]));
-    line.off = typical / std::max(median(std::move(scales)), 1e-300);
-  }
-  return line;
-}
 
 class Finding {
  public:
@@ -327,7 +288,7 @@ class Finding {
     std::vector<double> along;
     for (const Eigen::Vector3d& p : points_.position)
       along.push_back(fit_->projection.axes.row(2).dot(p) * points_.unit);
-    const Line line = line_through(along, points_.depth);
+    const DepthLine line = depth_line(along, points_.depth);
     std::vector<double> errors;
     for (std::size_t i = 0; i < along.size(); ++i)
       errors.push_back(std::abs(line.offset + line.factor * along[i] - static_cast<double>(points_.depth[i])));
@@ -345,7 +306,7 @@ class Finding {
     std::vector<double> expected;
     for (const Eigen::Vector3d& p : points_.position)
       expected.push_back((1 / fit_->projection.closeness + fit_->projection.axes.row(2).dot(p)) * points_.unit);
-    const Line line = line_through(expected, points_.depth);
+    const DepthLine line = depth_line(expected, points_.depth);
     const std::string end = ": depth comes from the positions";
     constexpr double small = 0.01;
     if (line.factor != 0 && line.off <= small) {

@@ -290,6 +290,7 @@ int run_info(const InfoArguments& arguments) {
       roles_of(info.picture, arguments.path, arguments.picture, views_of(info.picture, arguments.picture).front());
   info.cryptomattes = exr::find_cryptomattes(info.picture, info.roles, folder_of(arguments.path));
   find_camera(info, arguments.picture.camera);
+  if (info.camera) fmt::print(stderr, "{}", program::warnings_of(*info.camera, without_folders(arguments.path)));
   find_surfaces(info, profiles, arguments.picture.mm_per_unit);
   info.memory = find_memory(info, profiles, arguments.picture.mm_per_unit, cache_folder_of(arguments.cache_dir));
   fmt::print("{}", arguments.json ? json_text_of(info) : text_of(info));

@@ -3,6 +3,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <string_view>
 
 #include "dermis/exr.hpp"
 
@@ -13,6 +14,9 @@ std::string text_of(const exr::ChannelSum& channels);
 
 /// "perspective, focal length 1511.1 x 1511.1 px, centre (480, 270), from position and depth (...)"
 std::string text_of(const exr::FoundCamera& found);
+
+/// What contradicts the camera of a file, for stderr: "dermis: warning: FILE: ...", a line each.
+std::string warnings_of(const exr::FoundCamera& found, std::string_view path);
 
 /// {"layer": ..., "light": [[names], ...], "mask": null, ...}
 nlohmann::json json_of(const exr::Roles& roles);
