@@ -98,7 +98,7 @@ TEST_CASE("values outside their ranges are usage errors that name argument, valu
                                    {"--samples", "some", "1 to 1024 or auto"},
                                    {"--disc", "flat", "tangent or screen"},
                                    {"--accumulate", "0", "1 to 65536"},
-                                   {"--lighting", "dark", "raw or lit"},
+                                   {"--lighting", "dark", "auto or raw or lit"},
                                    {"--albedo-mix", "-0.1", "0 to 1"},
                                    {"--fov", "nan", "below 180"},
                                    {"--focal-px", "inf", "> 0"},

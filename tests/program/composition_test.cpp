@@ -133,7 +133,10 @@ TEST_CASE("noise in passes that is not in the beauty stays out of it") {
   const Outcome difference = made.filter(noisy, "difference.exr", {"--compose", "difference"});
   CHECK(has(difference.errors, "not of one render"));
   CHECK(made.off("difference.exr", "clean.exr") > 0.02);
-  CHECK(made.filter(noisy, "strict.exr", {"--strict"}).exit_code == 4);
+  // The kernel is narrow, so that it is not what is warned of first.
+  const Outcome strict = run_program(filter_arguments({noisy, made.scene.camera}, made.folder / "strict.exr",
+                                                      {"--material", "1=burley:1/1/0.5", "--strict"}));
+  CHECK(strict.exit_code == 4);
   CHECK_FALSE(std::filesystem::exists(made.folder / "strict.exr"));
 }
 

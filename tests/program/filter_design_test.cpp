@@ -363,10 +363,10 @@ TEST_CASE("the record in the result is a command that makes it again") {
       {{"--quality", "draft", "--shear", "on"}, " --method separable --quality draft --shear on --jitter"},
       {{"--taps", "9", "--shear", "off"}, " --placement optimised --shear off --jitter"},
       {{"--taps", "9", "--jitter", "0.5"}, " --placement optimised --shear off --jitter 0.5"},
-      {{"--quality", "reference"}, " --method exact --lighting"},
-      {{"--method", "disc"}, " --method disc --samples auto --disc tangent --accumulate 1 --seed 0 --lighting"},
+      {{"--quality", "reference"}, " --method exact --albedo-mix"},
+      {{"--method", "disc"}, " --method disc --samples auto --disc tangent --accumulate 1 --seed 0 --albedo-mix"},
       {{"--method", "disc", "--samples", "9", "--disc", "screen", "--prefilter", "--accumulate", "3", "--seed", "5"},
-       " --method disc --samples 9 --disc screen --prefilter --accumulate 3 --seed 5 --lighting"}};
+       " --method disc --samples 9 --disc screen --prefilter --accumulate 3 --seed 5 --albedo-mix"}};
   for (const Case& c : cases) {
     INFO(c.recorded);
     run_well(filter_arguments(scene, folder / "out.exr", with({"--material", "1=skin"}, c.words)));

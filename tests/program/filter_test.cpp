@@ -280,7 +280,7 @@ TEST_CASE("methods are drawn side by side") {
   check_refused(run_program({"compare-methods", scene.path, "-o", sheet, "--material", "1=skin"}), 2,
                 {"--mm-per-unit: got nothing"});
   Words lit = arguments;
-  lit.insert(lit.end(), {"--lighting", "lit"});  // the rule of 2012 knows raw light only
+  lit.insert(lit.end(), {"--lighting", "lit"});  // it has no such option: the rule of 2012 knows raw light only
   check_refused(run_program(lit), 2, {"--lighting"});
   check_refused(run_program(filter_arguments(scene, folder / "out.exr", {"--compare-methods", sheet})), 2,
                 {"--compare-methods"});
@@ -619,7 +619,7 @@ TEST_CASE("the numbers of --stats-json add up") {
   CHECK(stats["quality"] == "final");
   CHECK(stats["tolerance"] == 0.006);
   CHECK(stats["materials"][0]["design"]["predicted_rel_l2"] <= 0.006);
-  CHECK(stats["camera"]["source"] == "--focal-px");
+  CHECK(stats["camera"]["source"] == "position and depth");
   CHECK(stats["roles"]["layer"] == "ViewLayer");
   CHECK(stats["roles"]["mask"].is_null());
   CHECK_FALSE(stats["device"]["name"].get<std::string>().empty());

@@ -3,6 +3,7 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <sstream>
 #include <string>
 
 #include "program/made_picture.hpp"
@@ -86,7 +87,8 @@ TEST_CASE("first runs, which compile the kernels, say nothing") {
     command += " >" + quoted(folder / "stdout") + " 2>" + quoted(folder / "stderr");
     CHECK(std::system(command.c_str()) == 0);
     CHECK(bytes_of_file(folder / "stdout") == "");
-    CHECK(bytes_of_file(folder / "stderr") == "");
+    std::istringstream errors(bytes_of_file(folder / "stderr"));
+    for (std::string line; std::getline(errors, line);) CHECK(is_input(line));
   };
   run_first(filter_arguments(scene, folder / "out.exr", materials));
   run_first(filter_arguments(sphere, folder / "through.exr", {"--translucency", "--lights", lights}));

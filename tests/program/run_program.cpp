@@ -104,10 +104,14 @@ Outcome run_program(const std::vector<std::string>& arguments, const Surrounding
   Outcome outcome{WIFEXITED(status) ? WEXITSTATUS(status) : -1, bytes_of_file(folder / "stdout"), {}, {}};
   std::istringstream errors(bytes_of_file(folder / "stderr"));
   for (std::string line; std::getline(errors, line);) {
-    const bool is_input = line.starts_with("dermis: input: ");
-    (is_input ? outcome.input : outcome.errors) += line + (errors.eof() ? "" : "\n");
+    (is_input(line) ? outcome.input : outcome.errors) += line + (errors.eof() ? "" : "\n");
   }
   return outcome;
+}
+
+bool is_input(const std::string& line) {
+  return line.starts_with("dermis: input: ") ||
+         (line.starts_with("dermis: warning: ") && line.find(", beyond the picture of ") != std::string::npos);
 }
 
 std::string run_well(const std::vector<std::string>& arguments) {

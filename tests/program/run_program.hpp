@@ -8,8 +8,12 @@ struct Outcome {
   int exit_code;
   std::string output;  // stdout
   std::string errors;  // stderr, without the lines of `input`
-  std::string input;   // the lines "dermis: input: ..." of stderr: what was taken from the picture
+  std::string input;   // lines of stderr that say what was taken from the picture
 };
+
+/// True for a line of stderr "dermis: input: ...", or that a kernel is larger than the picture, as it often is in
+/// pictures that are made small to be quick.
+bool is_input(const std::string& line);
 
 struct Surroundings {
   std::string environment = {};  ///< one more variable, "NAME=value"

@@ -15,7 +15,6 @@ void add_surface_arguments(CLI::App& app, FilterArguments& arguments) {
   add_scale_argument(app, arguments.surface.picture);
   add_material_arguments(app, arguments.surface.materials);
   add_quality_argument(app, arguments.quality);
-  add_config_argument(app);
 }
 
 void add_usual_arguments(CLI::App& app, FilterArguments& arguments) {
@@ -25,13 +24,20 @@ void add_usual_arguments(CLI::App& app, FilterArguments& arguments) {
   app.add_option("--preview", arguments.output.files.preview, "also write the filtered beauty as sRGB")
       ->check(folder_or_file_ending({".png"}))
       ->type_name("FILE.png");
-  app.add_flag("--reuse", arguments.reuse,
-               "of a sequence: tiles of which nothing within reach has changed keep the light of the picture before");
 }
 
 void add_light_arguments(CLI::App& app, FilterArguments& arguments) {
   const HelpGroup group(app, "Light and albedo");
   Options& options = arguments.options;
+  app.add_option_function<std::string>(
+         "--lighting",
+         [&arguments](const std::string& word) { arguments.surface.lighting = value_named<Lighting>(word); },
+         "raw: the light is without albedo; lit: the albedo is in it; auto: as the renderer writes it, raw if that "
+         "is "
+         "not known")
+      ->check(one_of({"auto", "raw", "lit"}))
+      ->type_name("auto|raw|lit")
+      ->default_str("auto");
   app.add_option("--albedo-mix", options.albedo_mix,
                  "m: albedo^m goes in before the passes, albedo^(1-m) after; 0 = all after, 0.5 = half and half")
       ->check(number_0_to_1())
@@ -116,6 +122,12 @@ void add_scatter_arguments(CLI::App& app, FilterArguments& arguments) {
 
 void add_filter_arguments(CLI::App& app, FilterArguments& arguments) {
   add_usual_arguments(app, arguments);
+  {
+    const HelpGroup group(app, "Shots");
+    add_config_argument(app);
+    app.add_flag("--reuse", arguments.reuse,
+                 "of a sequence: tiles of which nothing within reach has changed keep the light of the picture before");
+  }
   add_reading_groups(app, arguments.surface);
   add_light_arguments(app, arguments);
   add_result_arguments(app, arguments);
@@ -127,6 +139,7 @@ void add_job_arguments(CLI::App& app, FilterArguments& arguments) {
   {
     const HelpGroup group(app, "Usual options");
     add_surface_arguments(app, arguments);
+    add_config_argument(app);
   }
   add_reading_groups(app, arguments.surface);
   add_light_arguments(app, arguments);

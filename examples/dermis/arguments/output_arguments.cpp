@@ -126,6 +126,7 @@ void add_stats_arguments(CLI::App& app, OutputArguments& arguments) {
 
 std::vector<PictureFiles> files_of(const OutputArguments& arguments) {
   check_standard_output(arguments);
+  if (arguments.inputs.empty()) return {};
   if (arguments.files.output.empty() && !arguments.in_place)
     throw Error(ErrorCode::usage, "--output", "nothing", "a file, a folder that exists, or --in-place");
   const std::size_t count = arguments.inputs.size();

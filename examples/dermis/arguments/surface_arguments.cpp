@@ -2,7 +2,6 @@
 
 #include "arguments/cryptomatte_argument.hpp"
 #include "arguments/help.hpp"
-#include "arguments/word_argument.hpp"
 #include "dermis/error.hpp"
 
 namespace dermis::program {
@@ -13,14 +12,6 @@ void add_reading_groups(CLI::App& app, SurfaceArguments& arguments) {
     add_role_arguments(app, arguments.picture);
     add_eye_argument(app, arguments.picture);
     add_cryptomatte_argument(app, arguments.cryptomatte);
-    app.add_option_function<std::string>(
-           "--lighting", [&arguments](const std::string& word) { arguments.lighting = value_named<Lighting>(word); },
-           "raw: the light is without albedo; lit: the albedo is in it; auto: as the renderer writes it, raw if that "
-           "is "
-           "not known")
-        ->check(one_of({"auto", "raw", "lit"}))
-        ->type_name("auto|raw|lit")
-        ->default_str("auto");
   }
   const HelpGroup group(app, "Camera, if position and depth do not tell it");
   add_camera_arguments(app, arguments.picture.camera);

@@ -124,6 +124,9 @@ int run_compare_methods(const CompareMethodsArguments& arguments) {
   SurfaceInput input =
       load_surface(picture, arguments.input, views_of(picture, request.picture).front(), request, true);
   require_scattering(input, request);
+  if (input.lighting == Lighting::lit)
+    throw Error(ErrorCode::usage, "light", "light with the albedo in it, as " + input.roles.renderer + " writes it",
+                "light without it, for the rule of 2012 knows no other");
   Messages messages(arguments.messages);
   messages.begin(arguments.input);
   count_pixels(input, request, messages);
