@@ -26,6 +26,7 @@ constexpr double nearly_all = 0.95;  // of the points; if more are false another
 constexpr double as_good = 1.05;     // times the error of another fit: medians of thousands are known to 2 %
 constexpr double plane = 1e-3;       // thickness of points over their extent
 constexpr std::size_t refined_starts = 3;
+constexpr std::size_t few = 2000;  // points that a fit is sought with before all refine it
 
 bool is_good(const std::optional<Fit>& fit, double half_px) {
   return fit && fit->share >= least_share && fit->noise_px <= most_noise_px && fit->off_px <= most_off * half_px;
@@ -42,39 +43,80 @@ FitModel model_with(const SeenPoints& points, const DepthType& type) {
   return model;
 }
 
+template <typename Value>
+std::vector<Value> every(const std::vector<Value>& values, std::size_t step) {
+  std::vector<Value> out;
+  for (std::size_t i = 0; i < values.size(); i += step) out.push_back(values[i]);
+  return out;
+}
+
+SeenPoints every(const SeenPoints& points, std::size_t step) {
+  SeenPoints out = points;
+  out.position = every(points.position, step);
+  out.pixel_px = every(points.pixel_px, step);
+  out.rounding = every(points.rounding, step);
+  out.patch = every(points.patch, step);
+  out.depth = every(points.depth, step);
+  return out;
+}
+
+FitModel every(const FitModel& model, std::size_t step) {
+  FitModel out = model;
+  out.depths = every(model.depths, step);
+  return out;
+}
+
 /// Searches the projections that see points, with depths of a type or without.
 class Search {
  public:
-  explicit Search(const SeenPoints& points) : points_(points), all_(spread(points, points.size())) {}
+  explicit Search(const SeenPoints& points)
+      : points_(points),
+        all_(spread(points, points.size())),
+        step_(std::max<std::size_t>(points.size() / few, 1)),
+        few_(every(points, step_)) {}
 
-  /// From linear solutions of all points; if that leads nowhere, of a few that are chosen at random.
   std::optional<Fit> free() const {
     const FitModel model;
+    return refined(free_of_few(model), model);
+  }
+
+  std::optional<Fit> with_depth(const FitModel& model, const std::optional<Fit>& before) const {
+    return refined(with_depth_of_few(model, every(model, step_), before), model);
+  }
+
+ private:
+  /// The fit to all points that begins at one to a few.
+  std::optional<Fit> refined(const std::optional<Fit>& fit, const FitModel& model) const {
+    return fit && step_ > 1 ? fit_projection(points_, fit->projection, model) : fit;
+  }
+
+  /// From linear solutions of all points; if that leads nowhere, of some that are chosen at random.
+  std::optional<Fit> free_of_few(const FitModel& model) const {
     std::vector<std::pair<double, Projection>> starts;
     for (const auto& start : {solve_lens(points_, all_), solve_parallel(points_, all_)})
       if (start) starts.emplace_back(score(points_, all_, *start), *start);
     std::sort(starts.begin(), starts.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
     std::optional<Fit> best;
     for (const auto& start : starts)
-      if (!is_complete(best)) keep_better(best, fit_projection(points_, start.second, model));
+      if (!is_complete(best)) keep_better(best, fit_projection(few_, start.second, model));
     if (!is_complete(best)) refine(best, solve_lens, 7, model);
     if (!is_good(best, points_.half_px)) refine(best, solve_parallel, 5, model);
     return best;
   }
 
-  std::optional<Fit> with_depth(const FitModel& model, const std::optional<Fit>& before) const {
+  std::optional<Fit> with_depth_of_few(const FitModel& model, const FitModel& few_model,
+                                       const std::optional<Fit>& before) const {
     std::optional<Fit> best;
     const LinearSolution solution = [&model](const SeenPoints& points, const Rows& rows) {
       return solve_with_depth(points, model.depths, rows);
     };
-    if (const auto start = solution(points_, all_)) best = fit_projection(points_, *start, model);
+    if (const auto start = solution(points_, all_)) best = fit_projection(few_, *start, few_model);
     if (!is_complete(best) && before && before->projection.closeness > 0)
-      keep_better(best, fit_projection(points_, before->projection, model));
-    if (!is_complete(best) && !before) refine(best, solution, 5, model);
+      keep_better(best, fit_projection(few_, before->projection, few_model));
+    if (!is_complete(best) && !before) refine(best, solution, 5, few_model);
     return best;
   }
 
- private:
   bool is_complete(const std::optional<Fit>& fit) const {
     return is_good(fit, points_.half_px) && fit->share >= nearly_all;
   }
@@ -86,13 +128,15 @@ class Search {
   void refine(std::optional<Fit>& best, const LinearSolution& solution, std::size_t sample,
               const FitModel& model) const {
     for (const Projection& start : random_starts(points_, solution, sample, refined_starts)) {
-      keep_better(best, fit_projection(points_, start, model));
+      keep_better(best, fit_projection(few_, start, model));
       if (is_complete(best)) return;
     }
   }
 
   const SeenPoints& points_;
   Rows all_;
+  std::size_t step_;
+  SeenPoints few_;
 };
 
 class Finding {

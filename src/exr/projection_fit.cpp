@@ -190,7 +190,8 @@ class Fitting {
       const double weight = weight_of(errors.value.squaredNorm() / at);
       if (weight == 0) continue;
       const Vector gradient = (weight / at) * (errors.slope.transpose() * errors.value);
-      out.matrix.noalias() += (weight / at) * (errors.slope.transpose() * errors.slope);
+      // Eigen's product of matrices of any size would take most of the time.
+      out.matrix += (weight / at) * errors.slope.transpose().lazyProduct(errors.slope);
       out.gradient += gradient;
       out.by_patch[static_cast<std::size_t>(points_.patch[i])] += gradient;
       out.squares += weight * errors.value.squaredNorm() / at;
