@@ -10,7 +10,7 @@
 namespace dermis::exr {
 namespace {
 
-constexpr double most_points = 20000;
+constexpr double most_points = 8000;
 constexpr float largest_half = 65504;
 constexpr double step_f16 = 1.0 / (1 << 10);
 constexpr double step_pxr24 = 1.0 / (1 << 15);
