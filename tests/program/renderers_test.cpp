@@ -183,7 +183,7 @@ TEST_CASE("passes may lie in files of their own, with the number of the frame in
   fs::copy_file(shot.folder / "beauty.0012.exr", shot.folder / "beauty.exr");
   check_refused(shot.filter("beauty.exr", "x.exr", words), 2, {"--role", "which has no number"});
   fs::remove(shot.folder / "ids.12.exr");
-  check_refused(shot.filter("beauty.0012.exr", "x.exr", words), 3, {"ids.12.exr", "no such file"});
+  check_refused(shot.filter("beauty.0012.exr", "x.exr", words), 3, {"ids.12.exr", "want an OpenEXR file"});
 }
 
 TEST_CASE("each view of a stereo picture is scattered") {
