@@ -117,6 +117,27 @@ TEST_CASE("light makes what filter scatters, and the light falls on the lit side
   CHECK(relative_l2(output, lit, "ViewLayer.Combined") < 0.3);
 }
 
+TEST_CASE("what depth says is background is not lit, whatever is left of its normals") {
+  const MadeSphere sphere;
+  const Picture picture = Picture::read(sphere.picture);
+  std::vector<float> depth = picture.plane("ViewLayer.Depth.Z");
+  std::vector<float> x = picture.plane("ViewLayer.Normal.X");
+  std::vector<float> combined = picture.plane("ViewLayer.Combined.R");
+  const std::size_t middle = depth.size() / 2 + 45;
+  REQUIRE(depth[middle] < 1e9F);
+  depth[middle] = 1e10F;
+  x[middle] = 0.25F;
+  combined[middle] = 0.5F;
+  PictureCopy(sphere.picture)
+      .with("ViewLayer.Depth.Z", depth)
+      .with("ViewLayer.Normal.X", x)
+      .with("ViewLayer.Combined.R", combined)
+      .write(sphere.picture);
+  const std::vector<float> lit = Picture::read(sphere.lit()).plane("ViewLayer.Combined.R");
+  CHECK(lit[middle] == 0.5F);
+  CHECK(lit[middle + 1] != combined[middle + 1]);
+}
+
 TEST_CASE("translucency softens the terminator of a sphere without a dark ring") {
   const MadeSphere sphere("160x150", "12");
   const std::string lit = sphere.lit({"--shadow-softness", "1"});

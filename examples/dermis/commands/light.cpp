@@ -21,6 +21,7 @@
 #include "dermis/exr.hpp"
 #include "dermis/shading.hpp"
 #include "dermis/version.hpp"
+#include "exr/seen_points.hpp"
 #include "files/lights_file.hpp"
 #include "files/lossy_channels.hpp"
 #include "files/output_file.hpp"
@@ -82,6 +83,16 @@ void clear_others(exr::Picture& picture, const exr::Roles& roles, Role role) {
   }
 }
 
+/// Normals without those of the background: antialiasing leaves some around silhouettes, where depth says that there is
+/// nothing.
+std::vector<float> load_normals(const exr::Picture& picture, const exr::Roles& roles) {
+  std::vector<float> normal = exr::load(picture, roles, Role::normal);
+  const std::vector<float> depth = exr::load(picture, roles, Role::depth);
+  for (std::size_t i = 0; i < depth.size(); ++i)
+    if (!exr::is_surface_depth(depth[i])) std::fill_n(normal.begin() + static_cast<std::ptrdiff_t>(3 * i), 3, 0.0F);
+  return normal;
+}
+
 int run_light(const LightArguments& arguments) {
   check_in_place(arguments.in_place, arguments.path, arguments.output);
   check_writable("--output", arguments.output);
@@ -92,7 +103,7 @@ int run_light(const LightArguments& arguments) {
   check_compression(arguments.compression, picture, roles, {});
   const Viewer viewer = viewer_of(arguments, picture, roles);
   const std::vector<float> position = exr::load(picture, roles, Role::position);
-  const std::vector<float> normal = exr::load(picture, roles, Role::normal);
+  const std::vector<float> normal = load_normals(picture, roles);
   const std::vector<float> albedo = exr::load(picture, roles, Role::albedo);
 
   const auto light = channels_for(picture, roles, Role::light, "DiffDir");
