@@ -90,8 +90,8 @@ class Fitting {
     }
     const Eigen::Vector2d seen = (now_.scale.cwiseProduct(p.head<2>()) + now_.slant * p.z()) / nearness;
     errors.value.head<2>() = now_.middle_px + seen - points_.pixel_px[i];
-    const Eigen::Matrix3d turn = turned(p);
     if (with_slope) {
+      const Eigen::Matrix3d turn = turned(p);
       for (int k = 0; k < 2; ++k) {
         errors.slope.block<1, 3>(k, turn_x) =
             (now_.scale(k) * turn.row(k) + (now_.slant(k) - seen(k) * now_.closeness) * turn.row(2)) / nearness;
@@ -101,24 +101,16 @@ class Fitting {
         errors.slope(k, slant_x + k) = p.z() / nearness;
       }
     }
-    if (uses_depth_) add_depth(i, p, turn, errors);
+    if (uses_depth_) add_depth(i, p, with_slope, errors);
     return errors;
   }
 
   /// From the eye the point lies at (X - slant / (scale closeness), 1 / closeness + Z).
-  void add_depth(std::size_t i, const Eigen::Vector3d& p, const Eigen::Matrix3d& turn, Errors& errors) const {
+  void add_depth(std::size_t i, const Eigen::Vector3d& p, bool with_slope, Errors& errors) const {
     const double per_unit = px_per_unit_[i];
     const double closeness = now_.closeness;
     const Eigen::Vector2d aside = now_.slant.cwiseQuotient(now_.scale) / closeness;
     const Eigen::Vector3d from_eye(p.x() - aside.x(), p.y() - aside.y(), p.z() + 1 / closeness);
-    Eigen::Matrix<double, 3, parameters> slope = Eigen::Matrix<double, 3, parameters>::Zero();
-    slope.block<3, 3>(0, turn_x) = turn;
-    slope(2, near) = -1 / (closeness * closeness);
-    for (int k = 0; k < 2; ++k) {
-      slope(k, log_scale_x + k) = aside(k);
-      slope(k, near) = aside(k) / closeness;
-      slope(k, slant_x + k) = -1 / (now_.scale(k) * closeness);
-    }
     const double length = from_eye.norm();
     const bool is_distance = model_.depth == FitModel::Depth::distance;
     const Eigen::RowVector3d direction =
@@ -126,6 +118,15 @@ class Fitting {
     // What a depth is off by counts less where its format rounds it more than the position is.
     const double weight = 1 / std::sqrt(1 + rounding_of_depth(i, per_unit) / variance(i, per_unit));
     errors.value.z() = weight * per_unit * ((is_distance ? length : from_eye.z()) - model_.depths[i]);
+    if (!with_slope) return;
+    Eigen::Matrix<double, 3, parameters> slope = Eigen::Matrix<double, 3, parameters>::Zero();
+    slope.block<3, 3>(0, turn_x) = turned(p);
+    slope(2, near) = -1 / (closeness * closeness);
+    for (int k = 0; k < 2; ++k) {
+      slope(k, log_scale_x + k) = aside(k);
+      slope(k, near) = aside(k) / closeness;
+      slope(k, slant_x + k) = -1 / (now_.scale(k) * closeness);
+    }
     errors.slope.row(2) = weight * per_unit * direction * slope;
   }
 
