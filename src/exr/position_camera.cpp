@@ -21,10 +21,11 @@ constexpr double least_share = 0.5;    // of the points that must be true
 constexpr double errors_allowed = 4;   // standard errors
 constexpr double limit_fine = 0.001;   // of the focal length
 constexpr double limit_coarse = 0.005;
-constexpr double most_off = 0.05;    // of half the picture: with more than that rounding explains anything
-constexpr double nearly_all = 0.95;  // of the points; if more are false another fit may show more
-constexpr double as_good = 1.05;     // times the error of another fit: medians of thousands are known to 2 %
-constexpr double plane = 1e-3;       // thickness of points over their extent
+constexpr double most_off = 0.05;         // of half the picture: with more than that rounding explains anything
+constexpr double nearly_all = 0.95;       // of the points; if more are false another fit may show more
+constexpr double as_good = 1.05;          // times the error of another fit: medians of thousands are known to 2 %
+constexpr double plane = 1e-3;            // thickness of points over their extent
+constexpr double nearly_parallel = 1e-3;  // half the change of size from the front of the scene to its back
 constexpr std::size_t refined_starts = 3;
 constexpr std::size_t few = 2000;  // points that a fit is sought with before all refine it
 
@@ -77,7 +78,10 @@ class Search {
 
   std::optional<Fit> free() const {
     const FitModel model;
-    return refined(free_of_few(model), model);
+    std::optional<Fit> fit = free_of_few(model);
+    // Nearly parallel rays leave the direction of the axis to the noise, in which the lens cannot be told.
+    if (fit && fit->foreshortening < nearly_parallel) fit = fit_projection(few_, as_parallel(fit->projection), model);
+    return refined(fit, model);
   }
 
   std::optional<Fit> with_depth(const FitModel& model, const std::optional<Fit>& before) const {
@@ -182,7 +186,7 @@ class Finding {
   /// Parallel rays, where no lens that the points allow would change their size by more than the limit.
   std::optional<Fit> parallel_fit() const {
     if (!(free_->foreshortening + errors_allowed * free_->foreshortening_doubt <= limit_)) return std::nullopt;
-    std::optional<Fit> fit = fit_projection(points_, free_->projection, {.is_parallel = true});
+    std::optional<Fit> fit = fit_projection(points_, as_parallel(free_->projection), {.is_parallel = true});
     return may_be_parallel(fit, *free_) && is_known(*fit) ? fit : std::nullopt;
   }
 
@@ -195,7 +199,7 @@ class Finding {
   /// matter.
   bool is_ambiguous(const Fit& lens) const {
     if (!(lens.foreshortening > limit_)) return false;
-    return may_be_parallel(fit_projection(points_, lens.projection, {.is_parallel = true}), lens);
+    return may_be_parallel(fit_projection(points_, as_parallel(lens.projection), {.is_parallel = true}), lens);
   }
 
   std::vector<DepthType> types_to_try() const {

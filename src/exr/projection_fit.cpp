@@ -273,7 +273,9 @@ class Fitting {
     const double half_extent = (along[along.size() - 1 - along.size() / 50] - along[along.size() / 50]) / 2;
 
     const Matrix spread = covariance(normal());
-    const auto error_of = [&spread](const Vector& slope) { return std::sqrt(slope.dot(spread * slope)); };
+    const auto error_of = [&spread](const Vector& slope) {
+      return std::sqrt(std::max(slope.dot(spread * slope), 0.0));
+    };
     fit.foreshortening = now_.closeness * half_extent;
     fit.foreshortening_doubt = error_of(Vector::Unit(near)) * half_extent;
     for (int k = 0; k < 2; ++k) {

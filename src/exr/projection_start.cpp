@@ -56,6 +56,12 @@ std::optional<Projection> projection_of(const Eigen::Vector2d& middle_px, const 
 
 }  // namespace
 
+Projection as_parallel(const Projection& projection) {
+  const Eigen::Matrix<double, 2, 3> across =
+      projection.scale.asDiagonal() * projection.axes.topRows<2>() + projection.slant * projection.axes.row(2);
+  return projection_of(projection.middle_px, across, Eigen::Vector3d::Zero()).value_or(projection);
+}
+
 std::optional<Projection> solve_lens(const SeenPoints& points, const Rows& rows) {
   if (rows.size() < 6) return std::nullopt;
   Eigen::Vector2d center = Eigen::Vector2d::Zero();

@@ -17,6 +17,9 @@ using Rows = std::vector<std::size_t>;
 /// A solution for some of the points; none if they do not determine one, for instance since they lie on one plane.
 using LinearSolution = std::function<std::optional<Projection>(const SeenPoints&, const Rows&)>;
 
+/// The parallel rays that show points in the middle of a projection where it does, with the axis along them.
+Projection as_parallel(const Projection& projection);
+
 /// The direct linear transform (Hartley and Zisserman 2004, algorithm 7.1), of 6 points or more.
 std::optional<Projection> solve_lens(const SeenPoints& points, const Rows& rows);
 
