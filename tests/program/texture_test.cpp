@@ -112,6 +112,23 @@ TEST_CASE("what a texture's filter did") {
             .find("texels_empty") != std::string::npos);
 }
 
+TEST_CASE("a renderer's own pass sss is kept beside that of a texture") {
+  const TemporaryFolder folder;
+  const MadeScene scene = make_scene(folder / "in.exr", "step", 40, 30, 4);
+  const std::vector<float> theirs(std::size_t{40} * 30, 0.25F);
+  PictureCopy(scene.path).with("ViewLayer.sss.R", theirs).write(scene.path);
+  const Outcome outcome =
+      run_program({"texture", scene.path, "-o", folder / "out.exr", "--profile", "skin", "--mm-per-texel", "0.25"});
+  CHECK(outcome.exit_code == 0);
+  CHECK(outcome.errors == "dermis: note: ViewLayer.sss: this pass is the renderer's; ours is ViewLayer.sss_dermis\n");
+  const Picture out = Picture::read(folder / "out.exr");
+  CHECK(out.plane("ViewLayer.sss.R") == theirs);
+  CHECK(out.plane("ViewLayer.sss_dermis.R") != theirs);
+  check_refused(run_program({"texture", scene.path, "-o", folder / "lossy.exr", "--profile", "skin", "--mm-per-texel",
+                             "0.25", "--compression", "dwaa"}),
+                2, {"--compression"});
+}
+
 TEST_CASE("what makes no sense of a texture is refused") {
   const TemporaryFolder folder;
   const std::string input = make_layout(folder);

@@ -29,14 +29,14 @@ bool is_own_pass(const exr::Picture& picture, const std::string& pass, bool is_f
   return (", " + *own + ", ").find(", " + pass + ", ") != std::string::npos;
 }
 
-/// The channels for the scattered light: "sss", or another pass if the renderer has one of that name.
-std::vector<std::string> scattered_channels(const SurfaceInput& input, Messages& messages) {
-  const exr::Picture& picture = input.picture;
+}  // namespace
+
+std::vector<std::string> scattered_channels(const exr::Picture& picture, const exr::Roles& roles, Messages& messages) {
   const auto is_there = [&](const std::string& name) { return picture.find(name) != nullptr; };
   std::string taken;
   for (int number = 1;; ++number) {
     const std::string name = number == 1 ? "sss" : number == 2 ? "sss_dermis" : fmt::format("sss_dermis{}", number);
-    std::vector<std::string> channels = channels_of_pass(input.roles, name);
+    std::vector<std::string> channels = channels_of_pass(roles, name);
     const std::string pass = pass_of(channels);
     if (std::none_of(channels.begin(), channels.end(), is_there)) {
       if (!taken.empty()) messages.note(fmt::format("{}: this pass is the renderer's; ours is {}", taken, pass));
@@ -51,14 +51,12 @@ std::vector<std::string> scattered_channels(const SurfaceInput& input, Messages&
   }
 }
 
-}  // namespace
-
 std::string pass_of(const std::vector<std::string>& channels) {
   return channels.front().substr(0, channels.front().rfind('.'));
 }
 
 ResultChannels result_channels(OutputLayers layers, const SurfaceInput& input, Messages& messages) {
-  ResultChannels channels{scattered_channels(input, messages), beauty_channels(input.roles), {}};
+  ResultChannels channels{scattered_channels(input.picture, input.roles, messages), beauty_channels(input.roles), {}};
   if (layers == OutputLayers::all) return channels;
   channels.written = channels.scattered;
   if (layers == OutputLayers::sss) return channels;

@@ -16,6 +16,10 @@ inline constexpr const char* scattered_attribute = "dermis:scattered";
 /// The name of a group of channels without its last part.
 std::string pass_of(const std::vector<std::string>& channels);
 
+/// The channels for the scattered light: those of "sss", or of another pass if the renderer has one of that name, which
+/// is said.
+std::vector<std::string> scattered_channels(const exr::Picture& picture, const exr::Roles& roles, Messages& messages);
+
 /// The channels of the result.
 struct ResultChannels {
   std::vector<std::string> scattered;

@@ -17,10 +17,12 @@
 #include "arguments/profile_argument.hpp"
 #include "arguments/word_argument.hpp"
 #include "commands/commands.hpp"
+#include "commands/result_channels.hpp"
 #include "dermis/error.hpp"
 #include "dermis/exr.hpp"
 #include "dermis/version.hpp"
 #include "files/loaded_frame.hpp"
+#include "files/lossy_channels.hpp"
 #include "files/output_file.hpp"
 #include "files/pass_channels.hpp"
 #include "files/picture_roles.hpp"
@@ -139,7 +141,10 @@ void filter_texture(const TextureArguments& arguments, const PictureFiles& files
   exr::Picture picture = exr::Picture::read(files.input);
   const exr::Roles roles = roles_of(picture, files.input, arguments.picture);
   const LoadedTexture loaded = load_texture(arguments, picture, roles);
-  const std::vector<std::string> scattered = channels_of_pass(roles, "sss");
+  check_compression(arguments.output.compression, picture, roles, {});
+  Messages messages({});
+  messages.begin(files.input);
+  const std::vector<std::string> scattered = scattered_channels(picture, roles, messages);
   const std::vector<std::string> result = channels_of_pass(roles, "sss_albedo");
   picture.add_channels(scattered, Format::f32);
   if (!loaded.albedo.empty()) picture.add_channels(result, Format::f32);
@@ -157,6 +162,7 @@ void filter_texture(const TextureArguments& arguments, const PictureFiles& files
   const TextureStats stats = session.plan->run(frame);
   picture.set_attribute("dermis:version", DERMIS_VERSION);
   picture.set_attribute("dermis:command", command_text(arguments));
+  picture.set_attribute(scattered_attribute, pass_of(scattered));
   picture.write(files.outputs.output, arguments.output.compression);
   print_stats(arguments.output.stats, files.outputs.stats_json, arguments.options, loaded, *session.plan, stats);
 }
