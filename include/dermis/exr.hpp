@@ -214,7 +214,8 @@ struct Roles {
   Lighting lighting = Lighting::raw;  ///< as the renderer writes it; raw if there is none
   std::array<ChannelSum, role_table.size()> channels = {};
   std::array<std::string, role_table.size()> rules =
-      {};  ///< what gave the role: a renderer, "any renderer" or "--role"
+      {};                                       ///< what gave the role: a renderer, "any renderer" or "--role"
+  std::vector<std::string> missing_light = {};  ///< passes of the renderer's light that are not there
 
   const ChannelSum& operator[](Role role) const { return channels[static_cast<std::size_t>(role)]; }
   ChannelSum& operator[](Role role) { return channels[static_cast<std::size_t>(role)]; }

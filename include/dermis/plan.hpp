@@ -168,7 +168,7 @@ enum class TileKind : std::uint8_t {
 };
 
 template <>
-inline constexpr std::array<Named<TileKind>, 8> word_table<TileKind> = {
+inline constexpr std::array<Named<TileKind>, 7> word_table<TileKind> = {
     {{TileKind::without_material, "without_material"},
      {TileKind::narrow, "narrow"},
      {TileKind::unlit, "unlit"},

@@ -7,6 +7,7 @@
 #include <iterator>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <unordered_map>
 #include <utility>
@@ -130,9 +131,28 @@ std::string manifest_of(const Picture& picture, const std::string& key, const st
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
+/// The names of a manifest of Cycles whose quotes and backslashes stand there as they are: {"NAME":"01234567",...},
+/// with eight hexadecimal digits.
+std::vector<std::string> unescaped_names(std::string_view manifest) {
+  constexpr std::string_view between = "\":\"";
+  constexpr std::size_t digits = 8;
+  std::vector<std::string> names;
+  std::size_t start = 2;
+  for (std::size_t at = manifest.find(between, start); at != manifest.npos; at = manifest.find(between, at)) {
+    const std::string_view id = manifest.substr(at + between.size(), digits + 1);
+    at += between.size();
+    if (id.find_first_not_of("0123456789abcdefABCDEF") != digits || id[digits] != '"') continue;
+    names.emplace_back(manifest.substr(start, at - between.size() - start));
+    at += digits + 1;
+    start = at + 2;
+  }
+  return names;
+}
+
 /// The names of a manifest, which is a JSON object of names and ids; none if it is anything else.
 std::vector<std::string> names_in(const std::string& manifest) {
   const nlohmann::json object = nlohmann::json::parse(manifest, nullptr, false);
+  if (object.is_discarded()) return unescaped_names(manifest);
   std::vector<std::string> names;
   if (!object.is_object()) return names;
   for (const auto& [name, id] : object.items()) names.push_back(name);
@@ -197,9 +217,18 @@ bool covers_pixels(const std::vector<float>& shares) {
   return std::any_of(shares.begin(), shares.end(), [](float share) { return share > 0; });
 }
 
-[[noreturn]] void no_name(const std::string& name, const std::string& of, const std::vector<std::string>& known) {
+/// A name that the Cryptomatte `of` does not show; another one may, `elsewhere`.
+[[noreturn]] void no_name(const std::string& name, const std::string& of, const std::string& elsewhere,
+                          const std::vector<Cryptomatte>& known) {
+  std::vector<std::string> seen;
+  for (const Cryptomatte& matte : known)
+    for (const auto& [its_name, pixels] : matte.names)
+      if (pixels > 0) seen.push_back(its_name);
   std::string wanted = "the name of an object, material or asset in the picture";
-  if (!known.empty()) wanted = "a name that does, as " + names_like(name, known);
+  if (!elsewhere.empty())
+    wanted = "names that are all of one Cryptomatte: this one is of " + escaped(elsewhere);
+  else if (!seen.empty())
+    wanted = "a name that does, as " + names_like(name, seen);
   throw Error(ErrorCode::role_missing, "cryptomatte",
               '"' + escaped(name) + "\", which covers no pixel of " + escaped(of), wanted);
 }
@@ -234,12 +263,16 @@ Mattes load_cryptomatte(const Picture& picture, const Roles& roles, std::span<co
   if (candidates.empty())
     throw Error(ErrorCode::role_missing, "cryptomatte", "no such channels", "CryptoMaterial00.R or the like");
   const std::size_t pixels = static_cast<std::size_t>(picture.width()) * static_cast<std::size_t>(picture.height());
-  std::string missing;
+  std::optional<std::size_t> missing;
+  std::string elsewhere;
   for (const RankedMatte& matte : candidates) {
     const auto coverage = coverage_of(picture, matte, ids_of(names));
     const auto unseen = std::find_if_not(coverage.begin(), coverage.end(), covers_pixels);
     if (unseen != coverage.end()) {
-      if (missing.empty()) missing = names[static_cast<std::size_t>(unseen - coverage.begin())];
+      if (!missing)
+        missing = static_cast<std::size_t>(unseen - coverage.begin());
+      else if (elsewhere.empty() && covers_pixels(coverage[*missing]))
+        elsewhere = matte.name;
       continue;
     }
     Mattes mattes{matte.name, std::vector<int>(pixels, -1), std::vector<float>(pixels)};
@@ -252,12 +285,7 @@ Mattes load_cryptomatte(const Picture& picture, const Roles& roles, std::span<co
     }
     return mattes;
   }
-  std::vector<std::string> known;
-  for (const RankedMatte& matte : candidates) {
-    const auto more = manifest_names(picture, matte, folder);
-    known.insert(known.end(), more.begin(), more.end());
-  }
-  no_name(missing, candidates.front().name, known);
+  no_name(names[missing.value_or(0)], candidates.front().name, elsewhere, find_cryptomattes(picture, roles, folder));
 }
 
 }  // namespace dermis::exr

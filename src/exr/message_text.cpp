@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <span>
+#include <string>
+#include <vector>
 
 #include "dermis/exr.hpp"
 
@@ -40,9 +43,20 @@ std::string escaped(std::string_view text) {
 
 std::string channel_list(const Picture& picture) {
   const std::span<const Channel> channels = picture.channels();
+  const auto pass_of = [](const Channel& channel) { return channel.name.substr(0, channel.name.rfind('.') + 1); };
+  const std::size_t listed = std::min(channels.size(), most_names);
   std::string out;
-  for (const Channel& channel : channels.first(std::min(channels.size(), most_names))) {
-    out += (out.empty() ? "" : ", ") + escaped(channel.name);
+  for (std::size_t i = 0; i < listed;) {
+    const std::string pass = pass_of(channels[i]);
+    std::vector<std::string> ends;
+    do {
+      ends.push_back(escaped(channels[i++].name.substr(pass.size())));
+    } while (!pass.empty() && i < listed && pass_of(channels[i]) == pass);
+    if (!out.empty()) out += ", ";
+    out += escaped(pass);
+    if (ends.size() > 1) out += '{';
+    for (std::size_t e = 0; e < ends.size(); ++e) out.append(e > 0 ? "," : "").append(ends[e]);
+    if (ends.size() > 1) out += '}';
   }
   if (channels.size() > most_names) out += " and " + std::to_string(channels.size() - most_names) + " more";
   return out.empty() ? "no channels" : out;

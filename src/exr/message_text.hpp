@@ -12,7 +12,7 @@ class Picture;
 /// message is one line.
 std::string escaped(std::string_view text);
 
-/// The names of all channels, for a message; the first 200 if there are more.
+/// The names of all channels, as "DiffDir.{R,G,B}, Z", for a message; the first 200 if there are more.
 std::string channel_list(const Picture& picture);
 
 /// `text` in lower case (ASCII only).

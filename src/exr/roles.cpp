@@ -29,6 +29,16 @@ std::vector<std::string> find_pass(const Catalogue& catalogue, std::string_view 
   return {};
 }
 
+/// The passes of the renderer's light that a sum of others lacks, each by its first name.
+std::vector<std::string> missing_light(const Catalogue& catalogue, std::string_view layer, const Renderer& renderer) {
+  std::vector<std::string> missing;
+  for (const Renderer::Pass& pass : renderer.passes) {
+    if (pass.role == Role::light && find_pass(catalogue, layer, pass).empty() && find_pass(catalogue, {}, pass).empty())
+      missing.push_back(pass.names.front());
+  }
+  return missing;
+}
+
 /// The passes of a role in a layer. What a layer lacks may stand outside all layers.
 ChannelSum find_role(const Catalogue& catalogue, std::string_view layer, const Renderer& renderer, Role role) {
   for (const std::string_view place : {layer, std::string_view()}) {
@@ -188,11 +198,14 @@ Roles find_roles(const Picture& picture, const RoleRequest& request) {
   if (roles.has(Role::light)) {
     roles.renderer = renderer.name;
     roles.lighting = renderer.lighting;
+    roles.missing_light = missing_light(catalogue, roles.layer, renderer);
   }
   for (const Override& change : parsed) {
     roles[change.role()] = change.resolve(catalogue);
     roles.rules[static_cast<std::size_t>(change.role())] = "--role";
-    if (change.role() == Role::light) roles.renderer.clear();
+    if (change.role() != Role::light) continue;
+    roles.renderer.clear();
+    roles.missing_light.clear();
   }
   return roles;
 }

@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <cstring>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "dermis/exr.hpp"
@@ -111,9 +112,40 @@ TEST_CASE("the manifest gives the names, their pixels, and those that are like a
   CHECK(wrong.says("as \"Hero Skin\" or"));
   CHECK(failure_of([&] { load_cryptomatte(picture, {}, Names{"unseen"}); }).says("which covers no pixel"));
 
-  // A manifest that is no JSON is none.
+  // Cycles writes names as they are: a quote among them makes it no JSON.
+  picture.set_attribute("cryptomatte/abc1234/manifest",
+                        R"({"Hero Skin":"371229d5","a "quoted":" one\":"00000000","wax/candle.v2":"0ED5628C"})");
+  std::vector<std::string> names;
+  const auto unescaped = dermis::exr::find_cryptomattes(picture, {});
+  for (const auto& cryptomatte_name : unescaped[0].names) names.push_back(cryptomatte_name.name);
+  CHECK(names == Names{"Hero Skin", R"(a "quoted":" one\)", "wax/candle.v2"});
+  CHECK(failure_of([&] { load_cryptomatte(picture, {}, Names{"hero skn"}); }).says("as \"Hero Skin\" or"));
+
+  // A manifest that is nothing of the kind is none.
   picture.set_attribute("cryptomatte/abc1234/manifest", "{broken");
   CHECK(dermis::exr::find_cryptomattes(picture, {})[0].names.empty());
+}
+
+TEST_CASE(
+    "names of two Cryptomattes at once are refused by the one that has the second, and only what is seen is offered") {
+  Picture picture({0, 0, 2, 1}, {0, 0, 2, 1});
+  for (const auto& [kind, first, second] :
+       {std::tuple("Material", "skin", "wax"), std::tuple("Object", "Head", "Candle")}) {
+    const std::string name = std::string("L.Crypto") + kind;
+    fill(picture, name + "00.r", {cryptomatte_id(first), cryptomatte_id(second)});
+    fill(picture, name + "00.g", {1, 1});
+    const std::string key = std::string("cryptomatte/") + kind;
+    picture.set_attribute(key + "/name", name);
+    picture.set_attribute(key + "/manifest",
+                          std::string(R"({"Candl":"0",")") + first + R"(":"0",")" + second + R"(":"0"})");
+  }
+  const auto mixed = failure_of([&] { load_cryptomatte(picture, {}, Names{"skin", "Candle"}); });
+  CHECK(mixed.code == ErrorCode::role_missing);
+  CHECK(mixed.says("\"Candle\", which covers no pixel of L.CryptoMaterial"));
+  CHECK(mixed.says("this one is of L.CryptoObject"));
+  const auto unseen = failure_of([&] { load_cryptomatte(picture, {}, Names{"Candl"}); });
+  CHECK(unseen.says("as \"Candle\" or"));
+  CHECK_FALSE(unseen.says("as \"Candl\""));
 }
 
 TEST_CASE("a name without crypto in it is a Cryptomatte if an attribute says so") {

@@ -172,7 +172,7 @@ TEST_CASE("malformed overrides are usage errors, unknown channels missing roles"
     INFO(text);
     const Failure failure = finding(picture, {text});
     REQUIRE(failure.code == ErrorCode::role_missing);
-    REQUIRE(failure.says("L.GlossInd.G"));
+    REQUIRE(failure.says("L.GlossInd.{R,G,B}"));
     REQUIRE(failure.says(std::string(text).substr(0, 5)));
   }
 }
@@ -411,6 +411,18 @@ TEST_CASE("load sums the groups of a role pixel by pixel") {
   REQUIRE(failure_of([&] { load(picture, wrong, Role::light); }).code == ErrorCode::usage);
 }
 
+TEST_CASE("passes that a sum of light lacks are told, unless the caller says what the light is") {
+  const auto missing = [](const Names& names, const dermis::exr::RoleRequest& request = {}) {
+    return find_roles(picture_of(names), request).missing_light;
+  };
+  CHECK(missing(of("L.DiffDir", "RGB") + of("L.DiffInd", "RGB")).empty());
+  CHECK(missing(of("L.DiffInd", "RGB")) == Names{"DiffDir"});
+  CHECK(missing(of("L.DiffDir", "RGB")) == Names{"DiffInd"});
+  CHECK(missing(of("diffuse_indirect", "RGB") + of("diffuse_albedo", "RGB")) == Names{"diffuse_direct"});
+  CHECK(missing(of("L.DiffInd", "RGB"), {.overrides = {"light=L.DiffInd"}}).empty());
+  CHECK(missing(of("L.Combined", "RGB")).empty());
+}
+
 TEST_CASE("a required role that is missing is named, with the channels there are") {
   const Picture picture = picture_of(of("L.DiffDir", "RGB") + Names{"odd\nname"});
   const Roles roles = find_roles(picture);
@@ -418,7 +430,7 @@ TEST_CASE("a required role that is missing is named, with the channels there are
   const Failure failure = failure_of([&] { require(picture, roles, Role::depth); });
   REQUIRE(failure.code == ErrorCode::role_missing);
   REQUIRE(failure.says("depth: "));
-  REQUIRE(failure.says("L.DiffDir.R, L.DiffDir.G, L.DiffDir.B, odd\\x0aname"));
+  REQUIRE(failure.says("L.DiffDir.{R,G,B}, odd\\x0aname"));
   REQUIRE(failure.says("--role depth="));
 }
 

@@ -310,15 +310,15 @@ TEST_CASE("a role that is missing is an error that names it and lists the channe
   const auto check = [&](const std::string& pass, const std::string& role, const Words& more) {
     INFO(role);
     PictureCopy(call.input()).without("ViewLayer." + pass).write(spoiled);
-    call.check_refuses_input(spoiled, 5, {role, "ViewLayer.Normal.X"}, more);
+    call.check_refuses_input(spoiled, 5, {role, "ViewLayer.Normal.{X,Y,Z}"}, more);
   };
   check("DiffDir", "light", {});
   check("DiffCol", "albedo", {});
   check("IndexMA", "material", {});
   check("Combined", "beauty", {"--preview", call.folder() / "p.png"});
   PictureCopy(call.input()).without("ViewLayer.Depth").without("ViewLayer.Position").write(spoiled);
-  call.check_refuses_input(spoiled, 5, {"depth", "ViewLayer.Normal.X"}, {"--focal-px", "100"});
-  call.check_refuses({"--role", "light=Nosuch"}, 5, {"Nosuch", "ViewLayer.DiffDir.R"});
+  call.check_refuses_input(spoiled, 5, {"depth", "ViewLayer.Normal.{X,Y,Z}"}, {"--focal-px", "100"});
+  call.check_refuses({"--role", "light=Nosuch"}, 5, {"Nosuch", "ViewLayer.DiffDir.{R,G,B}"});
   call.check_refuses({"--role", "light"}, 2, {"light"});
   call.check_refuses({"--role", "colour=ViewLayer.DiffDir"}, 2, {"colour"});
 }

@@ -104,6 +104,45 @@ constexpr double rounding = 1e-6;
 
 }  // namespace
 
+TEST_CASE("light that is lit and taken for raw, or the other way round, is told by the beauty") {
+  const GlossyScene made(65);
+  const Picture picture = Picture::read(made.scene.path);
+  PictureCopy copy(made.scene.path);
+  for (const char* end : ends) {
+    std::vector<float> light = picture.plane(std::string("ViewLayer.DiffDir") + end);
+    const std::vector<float> albedo = picture.plane(std::string("ViewLayer.DiffCol") + end);
+    for (std::size_t i = 0; i < made.pixels; ++i) light[i] *= albedo[i];
+    copy.with(std::string("ViewLayer.DiffDir") + end, light);
+  }
+  const std::string lit = made.folder / "lit.exr";
+  copy.write(lit);
+  CHECK(made.filter(lit, "lit_sss.exr", {"--lighting", "lit"}).errors.empty());
+  CHECK(has(made.filter(lit, "wrong.exr").errors, "--lighting: with raw the passes are "));
+  CHECK(has(made.filter(made.scene.path, "wrong.exr", {"--lighting", "lit"}).errors,
+            "--lighting: with lit the passes are "));
+}
+
+TEST_CASE("the other passes of a view are those of that view") {
+  const GlossyScene made(66);
+  const Picture picture = Picture::read(made.scene.path);
+  PictureCopy copy(made.scene.path);
+  for (const auto& channel : picture.channels()) {
+    const std::size_t dot = channel.name.rfind('.');
+    for (const std::string eye : {".left", ".right"})
+      copy.with(channel.name.substr(0, dot) + eye + channel.name.substr(dot), picture.plane(channel.name));
+  }
+  for (const auto& channel : picture.channels()) copy.without(channel.name);
+  const std::string stereo = made.folder / "stereo.exr";
+  copy.write(stereo);
+  CHECK(made.filter(made.scene.path, "mono_sss.exr", {"--compose", "sum"}).errors.empty());
+  CHECK(made.filter(stereo, "stereo_sss.exr", {"--compose", "sum"}).errors.empty());
+  const Picture mono = Picture::read(made.folder / "mono_sss.exr");
+  const Picture both = Picture::read(made.folder / "stereo_sss.exr");
+  for (const char* end : ends)
+    for (const std::string eye : {".left", ".right"})
+      CHECK(both.plane(combined + eye + end) == mono.plane(combined + end));
+}
+
 TEST_CASE("passes that add up to the beauty: all ways to compose it agree, and none says anything") {
   const GlossyScene made(60);
   for (const std::string compose : {"auto", "difference", "sum", "beauty"}) {

@@ -594,6 +594,7 @@ TEST_CASE("the numbers of --stats-json add up") {
     tiles_of_kinds += tiles[kind].get<int>();
   }
   CHECK(tiles["total"] == tiles_of_kinds);
+  for (const auto& [kind, count] : tiles.items()) CHECK_FALSE(kind.empty());
   CHECK(tiles["flat"].get<int>() + tiles["curved"].get<int>() > 0);
   const auto& pixels = stats["pixels"];
   CHECK(pixels["total"] == width * height);

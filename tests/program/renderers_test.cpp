@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -118,6 +119,7 @@ TEST_CASE("a file with lit light under another renderer's names gives the same s
   const Picture picture = Picture::read(shot.scene.path);
   shot.rename("raw.exr", {{"DiffCol", "diffuse_albedo"}, {"Depth.Z", "Z"}, {"Position", "P"}, {"IndexMA", "id"}});
   PictureCopy copy(shot.folder / "raw.exr");
+  const std::vector<float> one(picture.plane(layer + "Depth.Z").size(), 1);
   for (const char* end : {".R", ".G", ".B"}) {
     const std::vector<float> albedo = picture.plane(layer + "DiffCol" + end);
     std::vector<float> light = picture.plane(layer + "DiffDir" + end);
@@ -130,16 +132,47 @@ TEST_CASE("a file with lit light under another renderer's names gives the same s
   const Outcome outcome = shot.filter("lit.exr", "out.exr", words);
   INFO(outcome.errors);
   REQUIRE(outcome.exit_code == 0);
-  CHECK(has(outcome.input, "(arnold, lit)"));
   CHECK(shot.off("out.exr", "sss") < rounding);
   // To call it raw is another picture, and a light that no table has is warned of.
   words.insert(words.end(), {"--lighting", "raw"});
   REQUIRE(shot.filter("lit.exr", "raw-out.exr", words).exit_code == 0);
   CHECK(shot.off("raw-out.exr", "sss") > 0.01);
+  // Light of bounces alone is another picture, too.
+  PictureCopy(shot.folder / "lit.exr")
+      .without("diffuse_direct")
+      .with("diffuse_indirect.R", one)
+      .with("diffuse_indirect.G", one)
+      .with("diffuse_indirect.B", one)
+      .write(shot.folder / "bounces.exr");
+  words.resize(words.size() - 2);
+  const Outcome bounces = shot.filter("bounces.exr", "bounces-out.exr", words);
+  CHECK(bounces.exit_code == 0);
+  CHECK(has(bounces.errors, "light: no pass diffuse_direct beside diffuse_indirect.{R,G,B}"));
+  CHECK(has(outcome.input, "(arnold, lit, without diffuse_indirect)"));
   check_refused(shot.filter("lit.exr", "x.exr", {"--material", "1=skin", "--preset", "blender"}), 5,
                 {"light: got no such channel"});
   check_refused(shot.filter("lit.exr", "x.exr", {"--material", "1=skin", "--preset", "nuke"}), 2,
                 {"--preset: got nuke", "blender"});
+}
+
+TEST_CASE("ids that are no whole numbers do not scatter, and that is said") {
+  const Shot shot;
+  std::vector<float> ids = Picture::read(shot.scene.path).plane(layer + "IndexMA.X");
+  ids[5] = 0.5F;
+  ids[7] = 1.25F;
+  PictureCopy(shot.scene.path).with(layer + "IndexMA.X", ids).write(shot.folder / "mixed.exr");
+  const Outcome outcome = shot.filter("mixed.exr", "out.exr", both_materials);
+  CHECK(outcome.exit_code == 0);
+  CHECK(has(outcome.errors, "material: 2 pixels do not scatter, as their ids are no whole numbers"));
+  for (float& id : ids) id /= 255;
+  PictureCopy(shot.scene.path).with(layer + "IndexMA.X", ids).write(shot.folder / "fractions.exr");
+  check_refused(shot.filter("fractions.exr", "x.exr", both_materials), 5,
+                {"--material: got 1, 2", "the ids in the picture are ", "0.00392156"});
+}
+
+TEST_CASE("a name of a material with a blank and without quotes is said as such") {
+  const Shot shot;
+  check_refused(shot.filter("in.exr", "x.exr", {"--material", "Hero", "Skin=skin"}), 2, {"--material: got Hero"});
 }
 
 TEST_CASE("a map of names is a renderer of one's own") {
@@ -160,6 +193,7 @@ TEST_CASE("a map of names is a renderer of one's own") {
                                                         {R"({"roles": {"light": [3]}})", "a list of names"},
                                                         {R"({"names": 1})", "names: 1"},
                                                         {R"({})", "no roles"},
+                                                        {R"({"roles": {"light": "key"}})", "no lighting"},
                                                         {"{", "JSON"}}) {
     write_text(map, text);
     check_refused(shot.filter("studio.exr", "x.exr", words), 4, {"--preset", part});
@@ -174,10 +208,13 @@ TEST_CASE("passes may lie in files of their own, with the number of the frame in
   Words words = both_materials;
   words.insert(words.end(), {"--role", "depth=" + (shot.folder / "depth.####.exr") + ":Depth", "--role",
                              "material=" + (shot.folder / "ids.%d.exr")});
+  shot.rename("albedo.exr", {{"DiffCol.", ""}});
+  words.insert(words.end(), {"--role", "albedo=" + (shot.folder / "albedo.exr")});
   const Outcome outcome = shot.filter("beauty.0012.exr", "out.exr", words);
   INFO(outcome.errors);
   REQUIRE(outcome.exit_code == 0);
   CHECK(shot.off("out.exr", "L.sss") == 0);
+  CHECK(has(outcome.input, (shot.folder / "albedo.exr") + ":{R,G,B} (--role)"));
   const Picture out = Picture::read(shot.folder / "out.exr");
   for (const auto& channel : out.channels()) CHECK_FALSE(has(channel.name, ":"));
   fs::copy_file(shot.folder / "beauty.0012.exr", shot.folder / "beauty.exr");
@@ -280,12 +317,17 @@ TEST_CASE("what was taken is said: roles with their rules, camera, kernels in pi
   const Shot shot;
   std::vector<float> ids = Picture::read(shot.scene.path).plane(layer + "IndexMA.X");
   ids[5] = 1.5F;
-  PictureCopy(shot.scene.path).with(layer + "IndexMA.X", ids).write(shot.folder / "odd.exr");
+  std::vector<float> light = Picture::read(shot.scene.path).plane(layer + "DiffDir.R");
+  light[9] = std::numeric_limits<float>::quiet_NaN();
+  PictureCopy(shot.scene.path)
+      .with(layer + "IndexMA.X", ids)
+      .with(layer + "DiffDir.R", light)
+      .write(shot.folder / "odd.exr");
   const Outcome outcome = shot.filter("odd.exr", "out.exr", both_materials);
   REQUIRE(outcome.exit_code == 0);
-  for (const char* part : {"light ViewLayer.DiffDir.{R,G,B} (blender, raw)", "albedo ViewLayer.DiffCol",
-                           "camera: perspective", "from --focal-px", "--material 1 skin: ", "px in the median",
-                           "left out: 1 pixels with ids that are no whole numbers"})
+  for (const char* part : {"light ViewLayer.DiffDir.{R,G,B} (blender, raw, without DiffInd)",
+                           "albedo ViewLayer.DiffCol", "camera: perspective", "from --focal-px", "--material 1 skin: ",
+                           "px in the median", "left out: 1 pixels with light that is not finite"})
     CHECK(has(outcome.input, part));
   CHECK(shot.filter("odd.exr", "out.exr", {"--profile", "skin", "--quiet"}).input.empty());
 

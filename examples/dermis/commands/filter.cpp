@@ -118,6 +118,21 @@ Compose choose_compose(Compose asked, const PassFit& fit, const std::string& bea
   return chosen;
 }
 
+/// Warns if the passes add up to the beauty only if the albedo is in the light, or only if it is not, against what the
+/// light was taken for.
+void check_lighting(BeautyParts parts, const PassFit& fit, int width, const std::vector<std::uint8_t>& scatters,
+                    const std::string& beauty, Messages& messages) {
+  const auto fits = [](const PassFit& passes) { return passes.adds_up() || passes.is_complete(); };
+  if (fits(fit)) return;
+  const std::string_view taken = name_of(parts.lighting);
+  parts.lighting = parts.lighting == Lighting::raw ? Lighting::lit : Lighting::raw;
+  const PassFit other = measure_passes(parts, width, scatters);
+  if (fits(other))
+    messages.warn(ErrorCode::input_unsupported, "--lighting",
+                  fmt::format("with {} the passes are {} off {}, with {} they are {}; want {}", taken, percent(fit.off),
+                              beauty, name_of(parts.lighting), percent(other.off), name_of(parts.lighting)));
+}
+
 /// The beauty that the filter has changed, without what was not in the picture.
 void finish_beauty(const FilterJob& job, Compose compose, const BeautyParts& parts, const ResultChannels& channels,
                    SurfaceInput& input, std::vector<float>& beauty, Messages& messages) {
@@ -224,6 +239,7 @@ ViewResult filter_view(const FilterJob& job, const PictureFiles& files, SurfaceI
   if (has_beauty) {
     const std::vector<std::uint8_t> scatters = scattering_pixels(input.loaded, job.surface.profiles);
     const PassFit fit = measure_passes(parts, input.picture.width(), scatters);
+    check_lighting(parts, fit, input.picture.width(), scatters, pass_of(channels.beauty), messages);
     compose = choose_compose(job.compose, fit, pass_of(channels.beauty), messages);
     if (compose == Compose::beauty || (compose == Compose::automatic && fit.has_fireflies()))
       take_light_from_beauty(parts, scatters, compose == Compose::beauty, input.loaded.light);

@@ -141,8 +141,10 @@ FilterJob job_of(const FilterArguments& arguments) {
   check_tile_map(arguments);
   if (arguments.reuse && arguments.output.inputs.size() == 1)
     throw Error(ErrorCode::usage, "--reuse", "one picture", "several, of a sequence");
+  SurfaceRequest surface = request_of(arguments.surface);
+  // After the materials: a name with a blank and without quotes has its end among the files.
   FilterJob job{.pictures = files_of(arguments.output),
-                .surface = request_of(arguments.surface),
+                .surface = std::move(surface),
                 .options = options,
                 .sheared = arguments.sheared.value_or(options.jitter == 0 && choose_taps({}, options).options.sheared),
                 .reuse = arguments.reuse,

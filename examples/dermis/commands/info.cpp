@@ -266,7 +266,7 @@ std::string text_of(const Info& info) {
   for (const exr::RoleInfo& role : exr::role_table)
     text += fmt::format("  {:<13} {}\n", role.name, program::text_of(info.roles[role.role]));
   for (const auto& [name, names] : info.cryptomattes) {
-    text += fmt::format("cryptomatte     {}{}\n", name, names.empty() ? ", without a manifest" : "");
+    text += fmt::format("cryptomatte     {}{}\n", name, names.empty() ? ", without a manifest of its names" : "");
     for (const auto& [of, pixels] : names) text += fmt::format("  {:<30} {:>10} pixels\n", of, pixels);
   }
   text += fmt::format("camera          {}\n",

@@ -25,6 +25,24 @@ bool is_bad(const std::vector<float>& rgb, std::size_t pixel) {
   return false;
 }
 
+std::string text_of_light(const SurfaceInput& input) {
+  const std::vector<std::string>& missing = input.roles.missing_light;
+  return fmt::format(", {}{}{}", name_of(input.lighting), missing.empty() ? "" : ", without ",
+                     fmt::join(missing, ", "));
+}
+
+/// The first pass of a renderer's light is what comes from lamps: without it the picture is of bounces alone.
+void check_direct_light(const exr::Roles& roles, Messages& messages) {
+  const exr::Renderer* renderer = exr::find_renderer(roles.renderer);
+  if (renderer == nullptr || roles.missing_light.empty()) return;
+  const auto first = std::find_if(renderer->passes.begin(), renderer->passes.end(),
+                                  [](const exr::Renderer::Pass& pass) { return pass.role == Role::light; });
+  if (first->names.front() == roles.missing_light.front())
+    messages.warn(ErrorCode::role_missing, "light",
+                  fmt::format("no pass {} beside {}, which alone scatters; want it, or --role light=CHANNELS",
+                              first->names.front(), text_of(roles[Role::light])));
+}
+
 std::string text_of_roles(const SurfaceInput& input) {
   const exr::Roles& roles = input.roles;
   std::string text;
@@ -34,8 +52,7 @@ std::string text_of_roles(const SurfaceInput& input) {
     if (role == Role::material && input.loaded.material.empty()) continue;
     if ((role == Role::material || role == Role::matte) && !input.loaded.cryptomatte.empty()) continue;
     text += fmt::format("{}{} {} ({}{})", text.empty() ? "" : "; ", exr::name_of(role), text_of(roles[role]),
-                        roles.rules[static_cast<std::size_t>(role)],
-                        role == Role::light ? fmt::format(", {}", name_of(input.lighting)) : "");
+                        roles.rules[static_cast<std::size_t>(role)], role == Role::light ? text_of_light(input) : "");
   }
   if (!input.loaded.cryptomatte.empty()) text += fmt::format("; materials {}", input.loaded.cryptomatte);
   if (!roles.has(Role::beauty)) text += "; no beauty, so that only the scattered light is written";
@@ -47,7 +64,6 @@ std::string text_of(const LeftOut& left_out) {
   const auto add = [&](std::int64_t pixels, const char* what) {
     if (pixels > 0) text += fmt::format("{}{} pixels {}", text.empty() ? "" : ", ", pixels, what);
   };
-  add(left_out.fractional_ids, "with ids that are no whole numbers");
   add(left_out.background, "of a material that have no depth");
   add(left_out.bad_light, "with light that is not finite");
   add(left_out.bad_albedo, "with an albedo that is not finite");
@@ -117,6 +133,12 @@ void report_input(const SurfaceInput& input, const SurfaceRequest& request, cons
   messages.input(fmt::format("camera: {}", text_of(input.camera)));
   for (std::size_t i = 0; i < pixels.size(); ++i) report_material(request.profiles[i], pixels[i], input, messages);
   if (const std::string text = text_of(left_out); !text.empty()) messages.input("left out: " + text);
+  check_direct_light(input.roles, messages);
+  if (left_out.fractional_ids > 0)
+    messages.warn(ErrorCode::input_unsupported, "material",
+                  fmt::format("{} pixels do not scatter, as their ids are no whole numbers; want ids that are not "
+                              "antialiased, or names of a Cryptomatte",
+                              left_out.fractional_ids));
   if (left_out.bad_beauty > 0)
     messages.warn(ErrorCode::input_unsupported, "beauty",
                   fmt::format("{} pixels are not finite; they stay as they are", left_out.bad_beauty));

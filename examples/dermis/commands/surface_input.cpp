@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <future>
+#include <set>
 
 #include "dermis/error.hpp"
 #include "files/picture_roles.hpp"
@@ -91,13 +93,14 @@ void require_scattering(const SurfaceInput& input, const SurfaceRequest& request
   std::vector<int> wanted;
   for (const NamedProfile& named : request.profiles)
     if (named.id) wanted.push_back(*named.id);
-  std::vector<int> seen;
-  for (const auto& [id, pixels] : count_materials(input.loaded.material, input.loaded.depth).by_id)
-    if (seen.size() < most_ids) seen.push_back(id);
+  std::set<float> seen;
+  for (const float id : input.loaded.material)
+    if (seen.size() < most_ids && !std::isnan(id)) seen.insert(id);
   throw Error(ErrorCode::role_missing, wanted.empty() ? "--profile" : "--material",
               wanted.empty() ? "a picture of background only"
-                             : fmt::format("{}, and no pixel of it that scatters; the ids in the picture are {}",
-                                           fmt::join(wanted, ", "), fmt::join(seen, ", ")),
+                             : fmt::format("{}, and no pixel of it that scatters; the ids in the picture are {}{}",
+                                           fmt::join(wanted, ", "), fmt::join(seen, ", "),
+                                           seen.size() == most_ids ? " and more" : ""),
               "something that scatters, or --allow-empty");
 }
 

@@ -2,11 +2,11 @@
 
 #include <array>
 #include <cstddef>
-#include <map>
+#include <span>
 #include <string>
 #include <string_view>
 
-#include "exr/message_text.hpp"
+#include "exr/channel_catalogue.hpp"
 
 namespace dermis::program {
 namespace {
@@ -27,26 +27,21 @@ constexpr std::array passes = {
     PassNames{{"emit", "env", "emission", "environment"}, {}},
 };
 
+/// The passes of a layer and a view.
 class Layer {
  public:
   Layer(const exr::Picture& picture, const exr::Roles& roles)
-      : picture_(picture), prefix_(roles.layer.empty() ? "" : exr::lower(roles.layer) + ".") {
-    for (const exr::Channel& channel : picture.channels()) names_.emplace(exr::lower(channel.name), channel.name);
-  }
+      : picture_(picture), layer_(roles.layer), catalogue_(picture, roles.view) {}
 
   /// Adds the values of a pass, if it is there.
   template <std::size_t N>
   void add(const std::array<std::string_view, N>& its_names, std::vector<float>& sum) const {
     for (const std::string_view name : its_names) {
       if (name.empty()) continue;
-      std::array<const std::string*, 3> channels{};
-      for (std::size_t c = 0; c < 3; ++c) {
-        const auto found = names_.find(prefix_ + std::string(name) + std::array{".r", ".g", ".b"}[c]);
-        channels[c] = found != names_.end() ? &found->second : nullptr;
-      }
-      if (channels[0] == nullptr || channels[1] == nullptr || channels[2] == nullptr) continue;
-      for (std::size_t c = 0; c < 3; ++c) {
-        const std::vector<float> plane = picture_.plane(*channels[c]);
+      const std::vector<std::string> channels =
+          catalogue_.triple(exr::with_dot(layer_, name), std::span(exr::triple_endings).first(1));
+      for (std::size_t c = 0; c < channels.size(); ++c) {
+        const std::vector<float> plane = picture_.plane(channels[c]);
         sum.resize(3 * plane.size());
         for (std::size_t i = 0; i < plane.size(); ++i) sum[3 * i + c] += plane[i];
       }
@@ -55,8 +50,8 @@ class Layer {
 
  private:
   const exr::Picture& picture_;
-  std::string prefix_;
-  std::map<std::string, std::string> names_;
+  std::string layer_;
+  exr::Catalogue catalogue_;
 };
 
 void add_to(std::vector<float>& sum, const std::vector<float>& more) {

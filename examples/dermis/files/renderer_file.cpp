@@ -51,12 +51,14 @@ std::optional<exr::Renderer> read_renderer(const std::string& preset) {
                 "auto, " + exr::renderer_names() + ", or the name of a .json file");
   const json file = read_json("--preset", preset, "a JSON file with names of passes");
   exr::Renderer renderer{std::filesystem::path(preset).stem().string(), Lighting::raw, {}, {}};
+  bool says_lighting = false;
   if (!file.is_object()) refuse(preset, printed(file), wanted);
   for (const auto& [key, value] : file.items()) {
     if (key == "lighting") {
       const auto lighting = value.is_string() ? value_named<Lighting>(value.get<std::string>()) : std::nullopt;
       if (!lighting) refuse(preset, "lighting " + printed(value), "raw or lit");
       renderer.lighting = *lighting;
+      says_lighting = true;
     } else if (key == "roles" && value.is_object()) {
       for (const auto& [name, passes] : value.items()) add_role(renderer, name, passes, preset);
     } else {
@@ -64,6 +66,10 @@ std::optional<exr::Renderer> read_renderer(const std::string& preset) {
     }
   }
   if (renderer.passes.empty()) refuse(preset, "no roles", wanted);
+  const bool has_light = std::any_of(renderer.passes.begin(), renderer.passes.end(),
+                                     [](const exr::Renderer::Pass& pass) { return pass.role == exr::Role::light; });
+  if (has_light && !says_lighting)
+    refuse(preset, "no lighting", R"("lighting": "raw", or "lit" if the albedo is in the light)");
   return renderer;
 }
 

@@ -11,10 +11,10 @@ namespace {
 
 using nlohmann::json;
 
-/// Names that differ after the last dot only: prefix.{R,G,B}.
+/// Names that differ after the last dot only, or after that of a file: prefix.{R,G,B}, file.exr:{R,G,B}.
 std::string text_of_group(const std::vector<std::string>& names) {
-  const std::size_t dot = names.front().rfind('.');
-  const std::size_t prefix = dot == std::string::npos ? 0 : dot + 1;
+  const std::size_t last = names.front().find_last_of(".:");
+  const std::size_t prefix = last == std::string::npos ? 0 : last + 1;
   std::vector<std::string> ends;
   for (const std::string& name : names) {
     if (name.compare(0, prefix, names.front(), 0, prefix) != 0) return fmt::format("{}", fmt::join(names, ","));
