@@ -17,8 +17,8 @@ namespace dermis::exr {
 namespace {
 
 constexpr double most_noise_px = 0.5;  // a disc of confusion of 1 px radius, or a point anywhere in 1.7 px
-constexpr double least_share = 0.5;    // of the points that must be true
-constexpr double errors_allowed = 4;   // standard errors
+constexpr double least_share = 0.6;    // of the points that must be true
+constexpr double errors_allowed = 5;   // standard errors
 constexpr double limit_fine = 0.001;   // of the focal length
 constexpr double limit_coarse = 0.005;
 constexpr double most_off = 0.05;         // of half the picture: with more than that rounding explains anything
@@ -26,6 +26,8 @@ constexpr double nearly_all = 0.95;       // of the points; if more are false an
 constexpr double as_good = 1.05;          // times the error of another fit: medians of thousands are known to 2 %
 constexpr double plane = 1e-3;            // thickness of points over their extent
 constexpr double nearly_parallel = 1e-3;  // half the change of size from the front of the scene to its back
+constexpr double least_relief = 0.01;
+constexpr double least_relief_over_noise = 10;
 constexpr std::size_t refined_starts = 3;
 constexpr std::size_t few = 2000;  // points that a fit is sought with before all refine it
 
@@ -82,6 +84,15 @@ class Search {
     // Nearly parallel rays leave the direction of the axis to the noise, in which the lens cannot be told.
     if (fit && fit->foreshortening < nearly_parallel) fit = fit_projection(few_, as_parallel(fit->projection), model);
     return refined(fit, model);
+  }
+
+  /// Parallel rays, from a linear solution of all points or from some that are chosen at random.
+  std::optional<Fit> parallel() const {
+    const FitModel model{.is_parallel = true};
+    std::optional<Fit> best;
+    if (const auto start = solve_parallel(points_, all_)) best = fit_projection(few_, *start, model);
+    if (!is_complete(best)) refine(best, solve_parallel, 5, model);
+    return best;
   }
 
   std::optional<Fit> with_depth(const FitModel& model, const std::optional<Fit>& before) const {
@@ -159,7 +170,7 @@ class Finding {
     }
     const Search search(points_);
     free_ = search.free();
-    if (is_good(free_) && is_known(*free_)) {
+    if (is_good(free_) && is_known(*free_) && !may_be_parallel(search.parallel(), *free_)) {
       is_parallel_ = false;
       fit_ = free_;
     } else if (is_good(free_)) {
@@ -181,7 +192,13 @@ class Finding {
 
   bool is_good(const std::optional<Fit>& fit) const { return exr::is_good(fit, points_.half_px); }
 
-  bool is_known(const Fit& fit) const { return errors_allowed * fit.scale_doubt <= limit_; }
+  /// A plane is seen alike by many cameras: where the points that agree lie on one, or on what noise makes of one, no
+  /// doubt that is computed from them tells how wrong the fit may be.
+  bool is_known(const Fit& fit) const {
+    const double noise_px = std::max(fit.noise_px, fit.off_px);
+    const bool is_plane = fit.relief < least_relief || fit.relief_px < least_relief_over_noise * noise_px;
+    return !is_plane && errors_allowed * fit.scale_doubt <= limit_;
+  }
 
   /// Parallel rays, where no lens that the points allow would change their size by more than the limit.
   std::optional<Fit> parallel_fit() const {

@@ -53,6 +53,24 @@ Eigen::Matrix3d turned(const Eigen::Vector3d& p) {
   return m;
 }
 
+/// How far points reach across the plane nearest to them, and along it, without the outer ones.
+std::array<double, 2> extents_of(const std::vector<Eigen::Vector3d>& points) {
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3d& point : points) middle += point / static_cast<double>(points.size());
+  Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
+  for (const Eigen::Vector3d& point : points) squares += (point - middle) * (point - middle).transpose();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(squares);
+  std::array<double, 2> extents{};
+  for (const int k : {0, 1}) {
+    std::vector<double> along;
+    for (const Eigen::Vector3d& point : points) along.push_back(eigen.eigenvectors().col(2 * k).dot(point));
+    std::sort(along.begin(), along.end());
+    const std::size_t outer = along.size() / 50;
+    extents[static_cast<std::size_t>(k)] = along[along.size() - 1 - outer] - along[outer];
+  }
+  return extents;
+}
+
 class Fitting {
  public:
   Fitting(const SeenPoints& points, const Projection& start, const FitModel& model)
@@ -257,11 +275,13 @@ class Fitting {
     fit.noise_px = excess_px_;
     std::vector<double> off;
     std::vector<double> along;
+    std::vector<Eigen::Vector3d> kept;
     for (std::size_t i = 0; i < points_.size(); ++i) {
       const Eigen::Vector3d errors = errors_of(i, false).value;
       off.push_back(errors.head<2>().norm());
       if (weight_of(errors.squaredNorm() / variance(i)) == 0) continue;
       along.push_back(now_.axes.row(2).dot(points_.position[i]));
+      kept.push_back(points_.position[i]);
       fit.residual_units =
           std::max(fit.residual_units, errors.norm() / now_.px_per_unit(points_.position[i]) * points_.unit);
     }
@@ -269,13 +289,14 @@ class Fitting {
     fit.off_px = median(std::move(off));
     fit.share = static_cast<double>(along.size()) / static_cast<double>(points_.size());
     if (along.size() < fewest_points) return std::nullopt;
+    const std::array<double, 2> extent = extents_of(kept);
+    fit.relief = extent[0] / extent[1];
+    fit.relief_px = extent[0] * now_.px_per_unit(Eigen::Vector3d::Zero());
     std::sort(along.begin(), along.end());
     const double half_extent = (along[along.size() - 1 - along.size() / 50] - along[along.size() / 50]) / 2;
 
     const Matrix spread = covariance(normal());
-    const auto error_of = [&spread](const Vector& slope) {
-      return std::sqrt(std::max(slope.dot(spread * slope), 0.0));
-    };
+    const auto error_of = [&spread](const Vector& slope) { return std::sqrt(slope.dot(spread * slope)); };
     fit.foreshortening = now_.closeness * half_extent;
     fit.foreshortening_doubt = error_of(Vector::Unit(near)) * half_extent;
     for (int k = 0; k < 2; ++k) {

@@ -23,6 +23,8 @@ struct Fit {
   double noise_px = 0;     ///< standard deviation on the picture beyond what the formats round, along an axis
   double off_px = 0;       ///< median of the distances on the picture
   double score = 0;        ///< mean of score_of: of two fits the one with the lower score shows more points
+  double relief = 0;       ///< how far the points that count reach across their plane, over how far along it
+  double relief_px = 0;    ///< the same as seen from the side
   double share = 0;        ///< of the points that the fit is made of, 0..1; the others are false
   double scale_doubt = 0;  ///< relative standard error of the focal length (parallel: pixels per unit), or of depth at
                            ///< the picture's edge for want of the centre, if that is larger
