@@ -16,7 +16,7 @@ struct PositionCamera {
 
 /// From all positions, each of which should lie behind its pixel; where they leave it open, for instance since the
 /// scene is flat for its distance, from positions and depths together. A camera is found only if its focal length (or
-/// pixels per unit) is known to 0.1 %, or 0.5 % if the positions are half or lossy, with four standard errors. `told`
+/// pixels per unit) is known to 0.1 %, or 0.5 % if the positions are half or lossy, with five standard errors. `told`
 /// is the caller's word on the depths.
 PositionCamera find_position_camera(const Picture& picture, const Roles& roles, const std::optional<DepthType>& told);
 

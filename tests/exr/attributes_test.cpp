@@ -1,30 +1,14 @@
-#include <OpenImageIO/imageio.h>
-
 #include <algorithm>
 #include <array>
 #include <string>
 #include <vector>
 
 #include "dermis/exr.hpp"
+#include "exr/picture_with.hpp"
 #include "support/catch.hpp"
 #include "support/random.hpp"
-#include "support/temporary_folder.hpp"
 
 using dermis::exr::Picture;
-
-namespace {
-
-Picture picture_with(const OIIO::ImageSpec& spec) {
-  const TemporaryFolder folder;
-  const auto output = OIIO::ImageOutput::create("x.exr");
-  const std::vector<float> values(static_cast<std::size_t>(spec.width * spec.height));
-  REQUIRE(output->open(folder / "x.exr", spec));
-  REQUIRE(output->write_image(OIIO::TypeFloat, values.data()));
-  REQUIRE(output->close());
-  return Picture::read(folder / "x.exr");
-}
-
-}  // namespace
 
 TEST_CASE("the attributes of a file are read as text and as numbers") {
   Random random(31);

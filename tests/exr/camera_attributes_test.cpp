@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "dermis/exr.hpp"
+#include "exr/picture_with.hpp"
 #include "support/catch.hpp"
 #include "support/failure.hpp"
 #include "support/random.hpp"
-#include "support/temporary_folder.hpp"
 
 using dermis::Camera;
 using dermis::ErrorCode;
@@ -92,16 +92,6 @@ std::vector<float> depths(double low, double high) {
   std::vector<float> out;
   for (int i = 0; i < width * height; ++i) out.push_back(static_cast<float>(low + (high - low) * i / (width * height)));
   return out;
-}
-
-Picture with_attributes(const OIIO::ImageSpec& spec) {
-  const TemporaryFolder folder;
-  const auto output = OIIO::ImageOutput::create("x.exr");
-  const std::vector<float> values(static_cast<std::size_t>(spec.width * spec.height));
-  REQUIRE(output->open(folder / "x.exr", spec));
-  REQUIRE(output->write_image(OIIO::TypeFloat, values.data()));
-  REQUIRE(output->close());
-  return Picture::read(folder / "x.exr");
 }
 
 }  // namespace
@@ -187,32 +177,32 @@ TEST_CASE("the attributes of renderers tell the camera") {
   for (const char* name : {"cameraFov", "rs/camera/fov", "RSCameraFOV", "unreal/camera/FinalImage/fov"}) {
     OIIO::ImageSpec spec(width, height, 1, OIIO::TypeHalf);
     spec.attribute(name, fov);
-    const FoundCamera found = find_camera(with_attributes(spec), {});
+    const FoundCamera found = find_camera(picture_with(spec), {});
     REQUIRE(found.camera.scale_x == Approx(focal_px));
     REQUIRE(found.source.find(name) == 0);
     REQUIRE(found.warnings.empty());
 
     OIIO::ImageSpec text(width, height, 1, OIIO::TypeHalf);
     text.attribute(name, std::to_string(fov));
-    REQUIRE(find_camera(with_attributes(text), {}).camera.scale_x == Approx(focal_px).epsilon(1e-5));
+    REQUIRE(find_camera(picture_with(text), {}).camera.scale_x == Approx(focal_px).epsilon(1e-5));
     // The caller's word counts more.
-    REQUIRE(find_camera(with_attributes(text), {}, {.focal_px = 33}).camera.scale_x == 33);
+    REQUIRE(find_camera(picture_with(text), {}, {.focal_px = 33}).camera.scale_x == 33);
   }
   OIIO::ImageSpec lens(width, height, 1, OIIO::TypeHalf);
   lens.attribute("unreal/camera/A/focalLength", "50.0");
   lens.attribute("unreal/camera/A/sensorWidth", "36.0");
-  REQUIRE(find_camera(with_attributes(lens), {}).camera.scale_x == Approx(width * 50.0 / 36));
+  REQUIRE(find_camera(picture_with(lens), {}).camera.scale_x == Approx(width * 50.0 / 36));
   OIIO::ImageSpec inches(width, height, 1, OIIO::TypeHalf);
   inches.attribute("CameraFocalLength", 50.0F);
   inches.attribute("CameraFilmApertureHorizontal", 1.41732F);
-  REQUIRE(find_camera(with_attributes(inches), {}).camera.scale_x == Approx(width * 50.0 / 36).epsilon(1e-5));
+  REQUIRE(find_camera(picture_with(inches), {}).camera.scale_x == Approx(width * 50.0 / 36).epsilon(1e-5));
 }
 
 TEST_CASE("attributes that tell no camera are named") {
   OIIO::ImageSpec blender(width, height, 1, OIIO::TypeHalf);
   blender.attribute("Lens", "85.00");
   blender.attribute("cameraFov", 190.0F);
-  const Failure failure = failure_of([&] { find_camera(with_attributes(blender), {}); });
+  const Failure failure = failure_of([&] { find_camera(picture_with(blender), {}); });
   REQUIRE(failure.code == ErrorCode::role_missing);
   REQUIRE(failure.says("Lens 85"));
   REQUIRE(failure.says("width of the sensor"));

@@ -349,8 +349,8 @@ Verdict verdict_of(const Scene& scene, const Rendered& rendered) {
   return verdict;
 }
 
-/// Of 1040 scenes one camera was found with an error beyond its bound (0.7 % for 0.5 %): noise has tails. Two of twenty
-/// have a chance of 2 in 10000 at that rate; a fault in the code makes them many.
+/// Of 1060 scenes two cameras were found with an error beyond their bound (0.72 % and 0.51 % for 0.5 %): noise has
+/// tails. Two of twenty have a chance of 7 in 10000 at that rate; a fault in the code makes them many.
 void check_scenes(int count, int most_wrong) {
   int refused = 0;
   int wrong = 0;
@@ -368,7 +368,7 @@ void check_scenes(int count, int most_wrong) {
   }
   INFO(refused << " of " << count << " refused");
   CHECK(wrong <= most_wrong);
-  CHECK(10 * (count - refused) > count);  // Some two thirds are found.
+  CHECK(10 * (count - refused) > count);  // To refuse all would be no wrong camera either.
 }
 
 }  // namespace
