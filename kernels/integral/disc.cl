@@ -205,23 +205,24 @@ static inline Disc disc_at(const struct FrameParams* f, const Points* p, float s
   const float size_x = fma(p->z, f->slope_x, f->mm_per_px_x);
   const float size_y = fma(p->z, f->slope_y, f->mm_per_px_y);
 #if TANGENT_DISC
-  // Both are changes of depth per change of place on the screen.
-  float steep_x = slope_x / size_x;
-  float steep_y = slope_y / size_y;
+  // How depth changes along the screen where the ray goes `forward`.
+  float change_x = slope_x / size_x;
+  float change_y = slope_y / size_y;
+  float forward = 1.0f;
 #if HAS_NORMAL
-  // Along a plane n.P does not change.
+  // Along a plane n.P does not change. Lengths of normals do not matter, so that the largest part is made 1.
   const vrgb n = read_rgb(normals, x);
   const float facing = -fma(n.r, p->x_per_z, fma(n.g, p->y_per_z, n.b));
-  const float its_steep_x = n.r / facing;
-  const float its_steep_y = n.g / facing;
-  if (facing > 0.0f && isfinite(its_steep_x) && isfinite(its_steep_y)) {
-    steep_x = its_steep_x;
-    steep_y = its_steep_y;
+  const float largest = fmax(fmax(fabs(n.r), fabs(n.g)), facing);
+  if (facing > 0.0f && isfinite(n.r) && isfinite(n.g) && isfinite(facing)) {
+    change_x = n.r / largest;
+    change_y = n.g / largest;
+    forward = facing / largest;
   }
 #endif
-  const float steep = sqrt(fma(steep_x, steep_x, steep_y * steep_y));
-  const float limit = steep > STEEPEST ? STEEPEST / steep : 1.0f;
-  return disc_of(tangent_x(f, p, limit * steep_x * size_x), tangent_y(f, p, limit * steep_y * size_y));
+  const float along = sqrt(fma(change_x, change_x, change_y * change_y));
+  const float limit = STEEPEST / fmax(along, STEEPEST * forward);
+  return disc_of(tangent_x(f, p, limit * change_x * size_x), tangent_y(f, p, limit * change_y * size_y));
 #else
   const Tangent across = {size_x, 0.0f, 0.0f};
   const Tangent down = {0.0f, size_y, 0.0f};

@@ -61,14 +61,13 @@ class DiscFilter {
     const SurfacePixel& pixel = surface_.at(x, y);
     const DiscMaterial& disc = discs_[pixel.material];
     const Bounded width = widest(pixel, *disc.material);
-    const Target target{x, y, pixel, disc, width, plane_at(x, y), own_share(x, y, disc)};
-    const Bounded all = disc.sets[0].empty() ? exact(1) : share_of_all(target);
+    const BoundedRgb own = own_share(x, y, disc);
     BoundedRgb result{};
-    for (int which = 0; which < 2; ++which) {
-      const Bounded part = which == 0 ? exact(1) - all : all;
-      if (is_exactly(part, 0)) continue;
-      const BoundedRgb light = by_sets(target, disc.sets[which]);
-      for (int c = 0; c < 3; ++c) result[c] = result[c] + part * light[c];
+    bool is_first = true;
+    for (const DiscPlane& plane : planes_at(x, y)) {
+      const BoundedRgb light = by_shares({x, y, pixel, disc, width, plane, own});
+      for (int c = 0; c < 3; ++c) result[c] = is_first ? light[c] : including(result[c], light[c]);
+      is_first = false;
     }
     return result;
   }
@@ -99,32 +98,69 @@ class DiscFilter {
     return clamped(rounded(radius_px, division_roundings) - exact(few_radius_px), 0, 1);
   }
 
-  DiscPlane plane_at(int x, int y) const {
+  /// A direction of depth along the screen: it changes by `change` where the ray goes `forward`.
+  struct Slope {
+    std::array<Bounded, 2> change;
+    Bounded forward;
+  };
+
+  /// Returns the plane that a device takes, or both where float32 cannot tell whether the normal faces the camera.
+  std::vector<DiscPlane> planes_at(int x, int y) const {
     const View& view = surface_.view();
     const Bounded z = surface_.at(x, y).position_mm[2];
     const std::array<Bounded, 2> size{view.size_mm(horizontal, z), view.size_mm(vertical, z)};
     if (!options_.disc.tangent_plane) {
-      return DiscPlane::of({size[horizontal], exact(0), exact(0)}, {exact(0), size[vertical], exact(0)});
+      return {DiscPlane::of({size[horizontal], exact(0), exact(0)}, {exact(0), size[vertical], exact(0)})};
     }
-    std::array<Bounded, 2> steep;
-    for (const Axis axis : {horizontal, vertical}) steep[axis] = surface_.depth_slope(x, y, axis) / size[axis];
-    if (is_there(images_.normal)) {
-      const auto n = [&](int i) { return exact(images_.normal(x, y, i)); };
-      const auto ray = [&](Axis axis) { return view.ray(axis, (axis == horizontal ? x : y) + 0.5); };
-      const Bounded facing = exact(0) - rounded(n(0) * ray(horizontal) + n(1) * ray(vertical) + n(2));
-      const std::array<Bounded, 2> by_normal{n(0) / facing, n(1) / facing};
-      const bool has_normal = std::isfinite(by_normal[0].value) && std::isfinite(by_normal[1].value);
-      if (facing.value > 0 && has_normal) steep = by_normal;
+    std::vector<DiscPlane> planes;
+    const std::optional<Slope> by_normal = slope_by_normal(x, y);
+    if (by_normal && by_normal->forward.high() > 0) planes.push_back(tangent_plane(x, y, *by_normal, size));
+    if (!by_normal || by_normal->forward.low() <= 0) {
+      Slope by_depth{{}, exact(1)};
+      for (const Axis axis : {horizontal, vertical}) {
+        by_depth.change[axis] = surface_.depth_slope(x, y, axis) / size[axis];
+      }
+      planes.push_back(tangent_plane(x, y, by_depth, size));
     }
-    const Bounded length = square_root(rounded(steep[0] * steep[0] + steep[1] * steep[1]));
+    return planes;
+  }
+
+  /// Along a plane n.P does not change. Lengths of normals do not matter, so that the largest part is made 1.
+  std::optional<Slope> slope_by_normal(int x, int y) const {
+    if (!is_there(images_.normal)) return std::nullopt;
+    const auto n = [&](int i) { return exact(images_.normal(x, y, i)); };
+    const auto ray = [&](Axis axis) { return surface_.view().ray(axis, (axis == horizontal ? x : y) + 0.5); };
+    const Bounded forward = exact(0) - rounded(n(0) * ray(horizontal) + n(1) * ray(vertical) + n(2));
+    const Bounded largest = larger(larger(absolute(n(0)), absolute(n(1))), absolute(forward));
+    if (!std::isfinite(n(0).value) || !std::isfinite(n(1).value) || !std::isfinite(forward.value)) return std::nullopt;
+    if (largest.value == 0) return std::nullopt;
+    return Slope{{n(0) / largest, n(1) / largest}, forward / largest};
+  }
+
+  /// Depth changes by `steepest` at most.
+  DiscPlane tangent_plane(int x, int y, const Slope& slope, const std::array<Bounded, 2>& size) const {
+    const Bounded along = square_root(
+        rounded(slope.change[horizontal] * slope.change[horizontal] + slope.change[vertical] * slope.change[vertical]));
+    const Bounded limit = exact(steepest) / larger(along, exact(steepest) * slope.forward);
     std::array<Tangent, 2> tangents;
     for (const Axis axis : {horizontal, vertical}) {
-      // min(1, steepest / length) has no jump, so that a device that decides otherwise is off by rounding only.
-      Bounded slope = length.value > steepest ? steep[axis] * (exact(steepest) / length) : steep[axis];
-      if (length.low() <= steepest && length.high() > steepest) slope = rounded(slope, division_roundings + 8);
-      tangents[axis] = surface_.tangent(x, y, axis, slope * size[axis]);
+      tangents[axis] = surface_.tangent(x, y, axis, limit * slope.change[axis] * size[axis]);
     }
     return DiscPlane::of(tangents[horizontal], tangents[vertical]);
+  }
+
+  /// Gathers few and all samples.
+  BoundedRgb by_shares(const Target& target) const {
+    const DiscMaterial& disc = target.disc;
+    const Bounded all = disc.sets[0].empty() ? exact(1) : share_of_all(target);
+    BoundedRgb result{};
+    for (int which = 0; which < 2; ++which) {
+      const Bounded part = which == 0 ? exact(1) - all : all;
+      if (is_exactly(part, 0)) continue;
+      const BoundedRgb light = by_sets(target, disc.sets[which]);
+      for (int c = 0; c < 3; ++c) result[c] = result[c] + part * light[c];
+    }
+    return result;
   }
 
   /// Gathers from the set that the pixel's inner disc allows; the bound admits every set that a device may take.

@@ -30,6 +30,12 @@ double middle_of_texel(int pixel, int level, int steps) {
   return ((pixel >> level) + steps + 0.5) * (1 << level) - (pixel + 0.5);
 }
 
+/// Returns `a` where a device cannot have less than `least`.
+Bounded no_less(Bounded a, double least) {
+  if (!(a.low() < least && least < a.high())) return a;
+  return {0.5 * (least + a.high()), 0.5 * (a.high() - least)};
+}
+
 }  // namespace
 
 /// Two by two texels of a level, and the share of the right column and of the lower row.
@@ -53,16 +59,26 @@ std::vector<std::optional<Reading>> DiscReader::read(const SamplePlace& place) c
   return outcomes;
 }
 
+// A place on the screen is a ray from the camera, p = a + h b, with a across the view, h the rise and b = (., ., 1). No
+// point of it is nearer than |a x b| / |b|, which is |a| / |b| at least. That matters where the rise is hardly known.
 Bounded DiscReader::squared_distance(const SamplePlace& place, Bounded rise) const {
   const View& view = surface_.view();
-  const Bounded z = pixel_.position_mm[2] + rise;
+  const Bounded own_z = pixel_.position_mm[2];
+  const Bounded z = own_z + rise;
   Bounded sum = rise * rise;
+  double across = 0;
+  double along = 1;
   for (const Axis axis : {horizontal, vertical}) {
+    const Bounded d = axis == horizontal ? place.dx : place.dy;
     const Bounded ray = view.ray(axis, (axis == horizontal ? x_ : y_) + 0.5);
-    const Bounded part = ray * rise + (axis == horizontal ? place.dx : place.dy) * view.size_mm(axis, z);
+    const Bounded part = ray * rise + d * view.size_mm(axis, z);
     sum = sum + part * part;
+    const double least = std::max(absolute(d).low(), 0.0) * view.size_mm(axis, own_z).low();
+    across += least * least;
+    const double tilt = std::abs(ray.value) + std::abs(d.value) * view.growth_mm(axis, exact(1)).value;
+    along += tilt * tilt;
   }
-  return rounded(sum);
+  return no_less(rounded(sum), across / along);
 }
 
 int DiscReader::level_of(double spacing) const {

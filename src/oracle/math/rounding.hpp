@@ -58,6 +58,8 @@ inline Bounded operator-(Bounded a, Bounded b) { return rounded({a.value - b.val
 inline Bounded operator*(Bounded a, Bounded b) {
   if (is_exactly(a, 1)) return b;
   if (is_exactly(b, 1)) return a;
+  // An error that nothing bounds is not bounded by a factor of 0 either.
+  if (std::isinf(a.error) || std::isinf(b.error)) return {a.value * b.value, std::numeric_limits<double>::infinity()};
   return rounded({a.value * b.value, std::abs(a.value) * b.error + std::abs(b.value) * a.error + a.error * b.error});
 }
 
