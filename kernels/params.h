@@ -91,6 +91,57 @@ struct FrameLayouts {
   struct ImageParams scattered, result;
 };
 
+// Where the images of a view lie.
+struct ViewLayouts {
+  struct ImageParams light, albedo, position, normal, material;
+};
+
+struct ViewParams {
+  int width;
+  int height;
+  float to_camera[12];  // row by row, to mm in the axes of the frame's camera
+};
+
+// A pixel of a view, in mm in the axes of the frame's camera.
+struct ViewPixel {
+  float position[3];
+  float normal[3];   // of unit length
+  float along_x[3];  // along the surface to the next pixel; 0 if that is not known
+  float along_y[3];
+  float light[3];
+  int material;  // 1 + its index; 0: background, or not known well enough
+  int place;
+};
+
+// Places of a ViewPixel as the frame's camera has it.
+#define PLACE_SEEN 0
+#define PLACE_HIDDEN 1
+#define PLACE_CONTRADICTING 2  // in front of what the camera sees
+
+// Hidden surface that stands for the light that enters on an area.
+struct HiddenSample {
+  float position[3];
+  float area_mm2;
+  float light[3];
+  float normal[3];
+  float padding[2];
+};
+
+// A cube of space with hidden surface of one material: its samples one by one, for what is near, and joined to a few,
+// for what is far.
+struct HiddenCell {
+  float low[3], high[3];  // mm: around the samples
+  int first_sample, samples;
+  int first_joined, joined;
+};
+
+struct HiddenMaterial {
+  int first_cell, cells;
+  float reach_mm;
+  float near_mm, far_mm;  // up to the one samples count one by one, from the other on joined, in between both in part
+  int is_projected;       // Profile::is_projected
+};
+
 // The choices of a run; each member is 0 or 1.
 struct RunFlags {
   int writes_scattered;

@@ -320,6 +320,8 @@ struct FoundCamera {
   std::optional<ViewAxis> axis = {};  ///< if depth is to be taken from the positions
   /// World space, if known: the eye, scene units, or the direction in which an orthographic camera looks.
   std::optional<std::array<double, 3>> eye = {};
+  /// Row by row the 3 x 4 matrix that takes positions to the axes of the camera, as View::to_camera, if known.
+  std::optional<std::array<double, 12>> world_to_camera = {};
   DepthType depth_type = {};  ///< of the depth pass, if there is one that can be used
   double doubt = 0;           ///< relative standard error of the focal length, or of pixels per unit, if recovered
   /// What contradicts the camera or could not be used, each in one line.

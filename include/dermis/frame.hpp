@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include "dermis/words.hpp"
 
@@ -87,6 +88,23 @@ struct Camera {
   bool operator==(const Camera&) const = default;
 };
 
+/// Another picture of the surfaces of a frame at the same moment, from a place that sees what the camera of the frame
+/// does not: from behind, from a light, or a texture that was baked. All images have the view's size. Its resolution,
+/// projection and exposure time may be any; its light is in the units of the frame's. Pixels whose values are not
+/// finite count as background.
+struct View {
+  int width = 0;
+  int height = 0;
+  Image light = {};     ///< RGB, f16 or f32: as Frame::light
+  Image albedo = {};    ///< RGB, f16 or f32: if the frame has one
+  Image position = {};  ///< 3 channels, f16 or f32: of the surface, scene units, in any axes
+  Image normal = {};    ///< 3 channels, f16 or f32, of any length, in the same axes: across the surface, outwards
+  Image material = {};  ///< 1 channel, any format: as Frame::material, if the frame has it
+  /// Row by row the 3 x 4 matrix that takes positions to the axes of the frame's camera: to the right, down, away from
+  /// it, in the coordinates that Camera projects. A motion: no scale, no mirror.
+  std::array<double, 12> to_camera = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+};
+
 /// One G-buffer. All images have the frame's size. A pixel whose depth is not finite, not above 0 (perspective) or
 /// 1e9 and more is background, and so is one whose light or albedo is not finite: it neither gives nor takes light.
 struct Frame {
@@ -107,6 +125,10 @@ struct Frame {
   Image beauty = {};  ///< RGB, f16 or f32: the picture with all its light; needed for `result`
   Camera camera = {};
   double mm_per_unit = 1;  ///< millimetres per scene unit
+
+  /// Surfaces that the camera does not see: light that enters there and leaves where it looks is added. The frame needs
+  /// a depth then.
+  std::span<const View> views = {};
 
   OutputImage scattered = {};  ///< RGB, f16 or f32: light after scattering, before the albedo is put back
   OutputImage result = {};     ///< RGB, f16 or f32: `beauty` with its diffuse light scattered

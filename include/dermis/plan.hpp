@@ -150,6 +150,7 @@ struct FrameDescription {
   bool albedo = false;
   bool matte = false;
   bool normal = false;
+  bool views = false;
 
   /// The description of a frame.
   static FrameDescription of(const Frame& frame);
@@ -186,11 +187,19 @@ struct TileMap {
   std::vector<TileKind> kinds;  ///< row by row
 };
 
+/// The pixels of a view, by where their surface lies.
+struct ViewStats {
+  std::int64_t seen = 0;           ///< the frame's camera sees it as well
+  std::int64_t hidden = 0;         ///< it does not
+  std::int64_t contradicting = 0;  ///< it lies in front of what the camera sees, which cannot be; of those hidden
+};
+
 /// Times and counts of one run. Times are those of the device, in milliseconds.
 struct Stats {
   double prepare_ms = 0;   ///< memory, images bound to the device
   double classify_ms = 0;  ///< materials and classes of blocks
   double scatter_ms = 0;   ///< the passes, and all reading and writing of images that they do
+  double views_ms = 0;     ///< light that entered where only views look
   double finish_ms = 0;    ///< outputs that had to wait for the passes
   double total_ms = 0;     ///< wall clock, transfers included
 
@@ -204,6 +213,7 @@ struct Stats {
   std::int64_t channels_narrow = 0;  ///< of pixels scattered whose block shows one material: spread below half a pixel
   std::int64_t pixels_bad = 0;       ///< light or albedo not finite; counted where tiles are filtered
   std::int64_t pixels_unlit = 0;     ///< of those scattered by discs: skipped, without light within reach
+  std::vector<ViewStats> views;      ///< one for each view of the frame
 
   /// Tiles of one kind.
   std::int64_t count(TileKind kind) const { return std::count(tiles.kinds.begin(), tiles.kinds.end(), kind); }

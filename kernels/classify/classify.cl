@@ -4,6 +4,7 @@
 #include "classify/tap_level.h"
 #include "frame/coverage.h"
 #include "frame/inputs.h"
+#include "frame/material.h"
 #include "frame/shear.h"
 
 // The images are fetched into the caches so many blocks before their turn.
@@ -27,17 +28,6 @@ static inline vrgb width_of(const PixelRow* row) {
 #else
   return broadcast_rgb((vfloat)(1.0f));
 #endif
-}
-
-// 1 + the index of the material with that id, or 0.
-static inline vint find_material(vfloat id, global const struct MaterialParams* materials) {
-  const vfloat whole = rint(id);
-  const vint is_whole = AS_MASK(fabs(id - whole) <= 1e-3f);
-  vint found = (vint)(0);
-  for (int m = MATERIALS - 1; m >= 0; --m) {
-    found = select(found, (vint)(m + 1), is_whole & AS_MASK(whole == (float)materials[m].id));
-  }
-  return found;
 }
 
 // Reads V pixels of a row. `direct` rows are floats side by side, and all V of them lie in the frame.

@@ -192,9 +192,13 @@ static inline vrgb gather(const Pixel* pixel, global const struct DiscParams* it
     const float2 turn = turns[rotation_index(pixel->x, pixel->y, counts->seed + i)];
     Sum sum = {product(pixel->own, own_light), pixel->own};
     add_samples(&sum, pixel, turned(d, turn), set, count);
+#if SUMS_WEIGHTS
+    mean = sum_rgb(mean, sum.light);
+#else
     mean.r += sum.weight.r > 0.0f ? sum.light.r / sum.weight.r : own_light.r;
     mean.g += sum.weight.g > 0.0f ? sum.light.g / sum.weight.g : own_light.g;
     mean.b += sum.weight.b > 0.0f ? sum.light.b / sum.weight.b : own_light.b;
+#endif
   }
   return times(mean, 1.0f / (float)counts->seeds);
 }

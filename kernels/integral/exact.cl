@@ -120,6 +120,9 @@ static inline vrgb integrate(const Surface* surface, const Points* p, const Prof
     sum.weight = sum_rgb(sum.weight, row.weight);
     sum.light = sum_rgb(sum.light, row.light);
   }
+#if SUMS_WEIGHTS
+  return sum.light;
+#endif
   const vrgb result = {sum.light.r / sum.weight.r, sum.light.g / sum.weight.g, sum.light.b / sum.weight.b};
   return result;
 }

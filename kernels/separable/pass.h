@@ -102,6 +102,9 @@ FORCED_INLINE vrgb load_term(const Pass* s, int t, size_t at) {
 
 // Makes the result of a term of its sums.
 FORCED_INLINE vrgb finish_term(global const struct TermParams* term, vrgb light, vrgb weight, vrgb own) {
+#if SUMS_WEIGHTS
+  return light;
+#endif
   if (term->normalised) {
     const vrgb mean = {light.r / weight.r, light.g / weight.g, light.b / weight.b};
     return mean;

@@ -306,9 +306,32 @@ class Finding {
       out.eye = {eye.x(), eye.y(), eye.z()};
     }
     if (type_) out.depth_type = *type_;
+    out.world_to_camera = world_to_camera();
     add_depth(out);
     warn_of_aspect(out);
     return out;
+  }
+
+  /// A lens is at the origin of its axes. Parallel rays have theirs at the upper left corner of the picture, where
+  /// their camera has pixel 0, and at the depth of the axis.
+  std::array<double, 12> world_to_camera() const {
+    const Projection& projection = fit_->projection;
+    Eigen::Matrix3d turn = projection.axes;
+    Eigen::Vector3d origin;  // of world space
+    if (is_parallel_) {
+      turn.row(2) *= forward_sign_;
+      const Eigen::Vector2d corner = projection.middle_px.cwiseQuotient(projection.scale) * points_.unit;
+      const double depth = type_ ? depth_offset_ - turn.row(2).dot(points_.origin) : axis().offset;
+      origin << corner - turn.topRows<2>() * points_.origin, depth;
+    } else {
+      origin = projection.from_eye(Eigen::Vector3d::Zero()) * points_.unit - turn * points_.origin;
+    }
+    std::array<double, 12> rows{};
+    for (int i = 0; i < 3; ++i) {
+      for (int j = 0; j < 3; ++j) rows[static_cast<std::size_t>(4 * i + j)] = turn(i, j);
+      rows[static_cast<std::size_t>(4 * i + 3)] = origin(i);
+    }
+    return rows;
   }
 
   /// Depth of the positions, for where that of the file does not serve; that of parallel rays begins before all points.
@@ -363,6 +386,7 @@ class Finding {
     const bool is_negative = median({points_.depth.begin(), points_.depth.end()}) < 0;
     type_ = {.kind = DepthKind::z, .is_negative = is_negative};
     forward_sign_ = (line.factor < 0) == is_negative ? 1 : -1;
+    depth_offset_ = is_negative ? -line.offset : line.offset;
   }
 
   /// What is known of a depth that none of the types explains.
@@ -401,6 +425,7 @@ class Finding {
   std::optional<Fit> fit_;   ///< the one that counts
   bool is_parallel_ = false;
   double forward_sign_ = 1;        ///< of the axis of parallel rays
+  double depth_offset_ = 0;        ///< the depth of the points' origin, of parallel rays and depths that agree
   std::optional<DepthType> type_;  ///< of the depths, if they agree with the positions
 };
 

@@ -7,6 +7,8 @@ namespace dermis::params {
 // Kernels take these by value: a size that differs from theirs would shift all arguments that follow.
 static_assert(sizeof(ImageParams) == 2 * 8 + 4 * 4);
 static_assert(sizeof(FrameLayouts) == 10 * sizeof(ImageParams));
+static_assert(sizeof(ViewLayouts) == 5 * sizeof(ImageParams));
+static_assert(sizeof(ViewParams) == 14 * 4);
 static_assert(sizeof(RunFlags) == 7 * 4);
 static_assert(sizeof(FrameParams) == 15 * 4);
 static_assert(sizeof(TileParams) == 6 * 4);

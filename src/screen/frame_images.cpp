@@ -59,6 +59,7 @@ FrameDescription FrameDescription::of(const Frame& frame) {
   for (const FrameImage& image : frame_images) {
     if (image.described != nullptr) description.*image.described = static_cast<bool>(frame.*image.input);
   }
+  description.views = !frame.views.empty();
   return description;
 }
 
@@ -85,10 +86,9 @@ Frame one_pixel_frame(const FrameDescription& description, const void* in, void*
 std::array<CallerImage, image_count> check_frame(const Frame& frame, const FrameDescription& description,
                                                  const Options& options) {
   check_size(frame.width, frame.height, "frame size");
-  std::array<CallerImage, image_count> images;
+  const std::array<CallerImage, image_count> images = images_of_frame(frame);
   for (std::size_t i = 0; i < image_count; ++i) {
     const FrameImage& image = frame_images[i];
-    images[i] = image_of(frame, image);
     const bool is_described = image.described != nullptr;
     const bool is_needed = is_described ? description.*image.described
                                         : i == index_of(ImageName::light) ||
@@ -109,6 +109,12 @@ std::array<CallerImage, image_count> check_frame(const Frame& frame, const Frame
                 "an albedo image, to put raw light back into the beauty");
   }
   check_camera(frame);
+  return images;
+}
+
+std::array<CallerImage, image_count> images_of_frame(const Frame& frame) {
+  std::array<CallerImage, image_count> images;
+  for (std::size_t i = 0; i < image_count; ++i) images[i] = image_of(frame, frame_images[i]);
   return images;
 }
 

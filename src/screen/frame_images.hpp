@@ -39,6 +39,9 @@ Frame one_pixel_frame(const FrameDescription& description, const void* in, void*
 std::array<CallerImage, image_count> check_frame(const Frame& frame, const FrameDescription& description,
                                                  const Options& options);
 
+/// The images of a frame by ImageName, unchecked.
+std::array<CallerImage, image_count> images_of_frame(const Frame& frame);
+
 /// The buffers of the images of a frame.
 class BoundImages : public ImageBuffers {
  public:

@@ -5,6 +5,7 @@
 
 #include "opencl/program.hpp"
 #include "screen/methods/window_layout.hpp"
+#include "views/hidden_light.hpp"
 
 namespace dermis {
 
@@ -34,7 +35,8 @@ params::FrameParams frame_params(const Frame& frame, const Options& options, con
   return p;
 }
 
-params::RunFlags run_flags(const Plan::State& plan, const BoundImages& images, bool has_reuse, bool follows) {
+params::RunFlags run_flags(const Plan::State& plan, const Frame& frame, const BoundImages& images, bool has_reuse,
+                           bool follows) {
   const Options& options = plan.settings.options;
   const bool writes_scattered = images.has(ImageName::scattered);
   const bool writes_result = images.has(ImageName::result);
@@ -43,7 +45,8 @@ params::RunFlags run_flags(const Plan::State& plan, const BoundImages& images, b
       (writes_scattered && !(light_is_scattered && images.in_place(ImageName::scattered, ImageName::light))) ||
       (writes_result && !images.in_place(ImageName::result, ImageName::beauty)) ||
       options.bad_pixels == BadPixels::zero;
-  bool defers = !plan.method->by_tiles() || options.bad_pixels == BadPixels::error || has_reuse;
+  bool defers = !plan.method->by_tiles() || options.bad_pixels == BadPixels::error || has_reuse ||
+                !frame.views.empty() || plan.settings.sums_weights;
   for (const ImageName input :
        {ImageName::light, ImageName::albedo, ImageName::depth, ImageName::mask, ImageName::matte}) {
     defers = defers || images.output_over(input);
@@ -73,7 +76,7 @@ FrameRun::FrameRun(const Plan::State& plan, const Frame& frame, const BoundImage
       frame_(frame_params(frame, plan.settings.options, memory.sizes.frame)),
       window_(frame_window(memory.sizes.frame, plan.settings.has_pixel_width())),
       reuse_(plan.method->by_tiles() ? reuse : nullptr),
-      flags_(run_flags(plan, images, reuse_ != nullptr, reuse_ != nullptr && reuse_->continues(plan, frame))) {
+      flags_(run_flags(plan, frame, images, reuse_ != nullptr, reuse_ != nullptr && reuse_->continues(plan, frame))) {
   for (const cl_event event : wait_for) last_.emplace_back(event, true);
   if (flags_.defers != 0 && reuse_ == nullptr) memory.need_deferred(context_);
   deferred_ = reuse_ != nullptr ? reuse_->deferred : flags_.defers != 0 ? memory.deferred : memory.material_ids;
@@ -116,6 +119,11 @@ void FrameRun::scatter(int step) {
   phase_ = &events_.scatter;
   const int rows = plan_.method->rows_per_step(frame_.height);
   plan_.method->scatter(*this, {step * rows, std::min(rows, frame_.height - step * rows)});
+}
+
+std::vector<ViewStats> FrameRun::add_hidden_light(const Frame& frame) {
+  phase_ = &events_.views;
+  return plan_.hidden_light->add_to(*this, frame);
 }
 
 void FrameRun::finish() {

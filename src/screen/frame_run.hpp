@@ -16,6 +16,7 @@ namespace dermis {
 struct StepEvents {
   std::vector<cl::Event> classify;
   std::vector<cl::Event> scatter;
+  std::vector<cl::Event> views;
   std::vector<cl::Event> finish;
 };
 
@@ -30,6 +31,8 @@ class FrameRun {
   /// The number of steps that `scatter` is cut into.
   int scatter_steps() const { return parts_of(frame_.height, plan_.method->rows_per_step(frame_.height)); }
   void scatter(int step);
+  /// Adds the light that enters where only the views of the frame look. Blocks.
+  std::vector<ViewStats> add_hidden_light(const Frame& frame);
   void finish();
 
   const StepEvents& events() const { return events_; }
@@ -63,6 +66,8 @@ class FrameRun {
   void launch(const cl::Kernel& kernel, int columns, int rows, int local);
   /// Launches a kernel of which a work-item has a run of pixels of a row: a pixel, or all.
   void launch_runs(const cl::Kernel& kernel, int width, int rows);
+  /// The next launch waits for this event as well.
+  void wait_for(const cl::Event& event) { last_.push_back(event); }
   int run_length(int width) const { return item_is_pixel_ ? 1 : width; }
   int local_size() const { return item_is_pixel_ ? 0 : 1; }
 

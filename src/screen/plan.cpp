@@ -16,6 +16,7 @@
 #include "screen/methods/disc_tables.hpp"
 #include "screen/plan_state.hpp"
 #include "taps/check_design.hpp"
+#include "views/hidden_light.hpp"
 
 namespace dermis {
 
@@ -108,30 +109,34 @@ void Event::wait() const {
   with_device_errors([&] { cl::Event(event_, true).wait(); });
 }
 
+std::unique_ptr<Plan::State> build_plan(PlanSettings its_settings) {
+  auto state = std::make_unique<Plan::State>(std::move(its_settings));
+  const PlanSettings& settings = state->settings;
+  ScatterMethod& method = *state->method;
+  const cl::Context context(settings.device.context(), true);
+  const int terms = method.most_terms();
+  state->sources = plan_programs(settings, method, terms);
+  // The kernels are built while the taps are fitted.
+  const auto build = [&](const ProgramSource& source) {
+    return std::async(std::launch::async, [&] { return build_program(settings.device, source.files, source.options); });
+  };
+  auto program = build(state->sources.method);
+  auto classification = build(state->sources.classification);
+  const MaterialTables tables = fit_taps(settings, method, terms);
+  state->materials = upload(context, tables.materials);
+  state->levels = upload(context, tables.levels);
+  method.upload(context, tables);
+  state->classification = classification.get();
+  state->program = program.get();
+  if (settings.frames.views) state->hidden_light = std::make_shared<const HiddenLight>(settings);
+  return state;
+}
+
 Plan::Plan(const Device& device, std::vector<Material> materials, const FrameDescription& frames,
            const Options& options) {
-  auto state = std::make_unique<State>(settings_of(device, std::move(materials), frames, options));
-  with_device_errors([&] {
-    const PlanSettings& settings = state->settings;
-    ScatterMethod& method = *state->method;
-    const cl::Context context(device.context(), true);
-    const int terms = method.most_terms();
-    state->sources = plan_programs(settings, method, terms);
-    // The kernels are built while the taps are fitted.
-    const auto build = [&](const ProgramSource& source) {
-      return std::async(std::launch::async, [&] { return build_program(device, source.files, source.options); });
-    };
-    auto program = build(state->sources.method);
-    auto classification = build(state->sources.classification);
-    const MaterialTables tables = fit_taps(settings, method, terms);
-    state->materials = upload(context, tables.materials);
-    state->levels = upload(context, tables.levels);
-    method.upload(context, tables);
-    state->classification = classification.get();
-    state->program = program.get();
-  });
-  const bool compiles_at_launch = !state->settings.item_is_pixel();
-  state_ = std::move(state);
+  PlanSettings settings = settings_of(device, std::move(materials), frames, options);
+  const bool compiles_at_launch = !settings.item_is_pixel();
+  state_ = with_device_errors([&] { return build_plan(std::move(settings)); });
   if (compiles_at_launch) run_on_black(*this, frames);
 }
 
@@ -151,6 +156,7 @@ Stats Plan::run(const Frame& frame, Reuse::State* reuse, const Progress& progres
     return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   };
   const auto images = check_frame(frame, state_->settings.frames, state_->settings.options);
+  check_views(frame, state_->settings);
   const auto go_on = [&](double share) { return !progress || progress(share); };
   return with_device_errors([&] {
     const cl::Context context(state_->settings.device.context(), true);
@@ -160,6 +166,7 @@ Stats Plan::run(const Frame& frame, Reuse::State* reuse, const Progress& progres
     // Whatever ends the run, the device must be done with the caller's memory first.
     const BorrowedMemory<RunMemory> memory(state_->memories, context, queue,
                                            state_->run_sizes(frame.width, frame.height));
+    if (!frame.views.empty()) reuse = nullptr;
     FrameRun frame_run(*state_, frame, bound, *memory, queue, {}, reuse);
     Stats stats;
     stats.prepare_ms = milliseconds_since_start();
@@ -177,12 +184,14 @@ Stats Plan::run(const Frame& frame, Reuse::State* reuse, const Progress& progres
                     "finite light and albedo, or bad_pixels keep or zero");
       }
     }
+    if (!frame.views.empty()) stats.views = frame_run.add_hidden_light(frame);
     frame_run.finish();
     bound.read_back(queue);
     frame_run.add_to(stats);
     if (reuse != nullptr) reuse->plan = state_->number;
     stats.classify_ms = milliseconds(frame_run.events().classify);
     stats.scatter_ms = milliseconds(frame_run.events().scatter);
+    stats.views_ms = milliseconds(frame_run.events().views);
     stats.finish_ms = milliseconds(frame_run.events().finish);
     stats.total_ms = milliseconds_since_start();
     go_on(1);
@@ -195,6 +204,10 @@ Event Plan::enqueue(const Frame& frame, cl_command_queue queue, std::span<const 
   const auto images = check_frame(frame, state_->settings.frames, state_->settings.options);
   for (const CallerImage& image : images) {
     if (image.host != nullptr) throw Error(ErrorCode::usage, image.name, "host memory", "a buffer, to enqueue");
+  }
+  if (!frame.views.empty()) {
+    throw Error(ErrorCode::usage, "views", std::to_string(frame.views.size()) + " views",
+                "none, as enqueue cannot wait for them");
   }
   if (state_->settings.options.bad_pixels == BadPixels::error) {
     throw Error(ErrorCode::usage, "bad_pixels", "error", "keep or zero, as enqueue cannot wait for the count");

@@ -7,9 +7,6 @@
 
 namespace dermis {
 
-namespace {
-
-/// The build options that all kernels of a plan share.
 std::string common_options(const PlanSettings& settings) {
   std::ostringstream bounds;
   bounds << std::scientific << " -DFLATNESS=" << Taps::flatness << "f -DLEAST_CENTRE_WEIGHT=" << least_centre_weight
@@ -17,10 +14,9 @@ std::string common_options(const PlanSettings& settings) {
   return "-cl-std=CL1.2" + build_constant("MATERIALS", static_cast<int>(settings.materials.size())) +
          image_constants(settings.frames) + build_constant("PIXEL_WIDTH", settings.has_pixel_width() ? 1 : 0) +
          build_constant("JITTER", settings.options.jitter > 0 ? 1 : 0) +
-         build_constant("SHEARED", settings.is_sheared() ? 1 : 0) + bounds.str();
+         build_constant("SHEARED", settings.is_sheared() ? 1 : 0) +
+         build_constant("SUMS_WEIGHTS", settings.sums_weights ? 1 : 0) + bounds.str();
 }
-
-}  // namespace
 
 PlanPrograms plan_programs(const PlanSettings& settings, const ScatterMethod& method, int terms) {
   const std::string options = common_options(settings);

@@ -16,15 +16,18 @@
 
 namespace dermis {
 
+class HiddenLight;
+
 struct Plan::State {
   PlanSettings settings;
   std::uint64_t number;  ///< no other plan of the process has it
   std::unique_ptr<ScatterMethod> method;
   PlanPrograms sources;
   cl::Program classification;
-  cl::Program program;   ///< of the method
-  cl::Buffer materials;  ///< MaterialParams
-  cl::Buffer levels;     ///< TapLevelParams
+  cl::Program program;                              ///< of the method
+  cl::Buffer materials;                             ///< MaterialParams
+  cl::Buffer levels;                                ///< TapLevelParams
+  std::shared_ptr<const HiddenLight> hidden_light;  ///< null if frames have no views
   mutable MemoryPool<RunMemory> memories;
 
   explicit State(PlanSettings its_settings)
@@ -46,5 +49,8 @@ struct Plan::State {
     return ++last;
   }
 };
+
+/// Builds the kernels of a plan and fits its taps. Throws Error(device) if the device refuses the kernels.
+std::unique_ptr<Plan::State> build_plan(PlanSettings settings);
 
 }  // namespace dermis

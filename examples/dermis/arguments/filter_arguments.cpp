@@ -110,6 +110,10 @@ void add_scatter_arguments(CLI::App& app, FilterArguments& arguments) {
     add_disc_arguments(app, arguments.disc);
   }
   {
+    const HelpGroup group(app, "Light from behind");
+    add_view_arguments(app, arguments.surface);
+  }
+  {
     const HelpGroup group(app, "Translucency");
     add_translucency_arguments(app, arguments.surface.translucency);
   }

@@ -2,6 +2,7 @@
 
 #include "arguments/cryptomatte_argument.hpp"
 #include "arguments/help.hpp"
+#include "arguments/word_argument.hpp"
 #include "dermis/error.hpp"
 
 namespace dermis::program {
@@ -15,6 +16,20 @@ void add_reading_groups(CLI::App& app, SurfaceArguments& arguments) {
   }
   const HelpGroup group(app, "Camera, if position and depth do not tell it");
   add_camera_arguments(app, arguments.picture.camera);
+}
+
+void add_view_arguments(CLI::App& app, SurfaceArguments& arguments) {
+  app.add_option("--view", arguments.views,
+                 "a picture of the same frame from elsewhere, from behind above all, with light, albedo, positions, "
+                 "normals and ids: light that enters where only it looks is added; of any size and camera, repeatable; "
+                 "#### in it is the input's number")
+      ->type_name("FILE.exr")
+      ->type_size(1)
+      ->allow_extra_args(false);
+  add_word(app, "--view-factor", arguments.view_factor,
+           "principled: the light has what Blender's Principled BSDF puts into it where the camera looks along the "
+           "surface, which is taken out, for light from below has none of it; auto: principled with --view and a "
+           "picture of Blender, else none");
 }
 
 void check_surface(const SurfaceArguments& arguments) {
@@ -37,6 +52,8 @@ SurfaceRequest request_of(const SurfaceArguments& arguments) {
                          .profiles = {},
                          .mattes = parse_mattes(arguments.cryptomatte),
                          .lighting = arguments.lighting,
+                         .views = arguments.views,
+                         .view_factor = arguments.view_factor,
                          .lights = {},
                          .translucency = arguments.translucency.options};
   if (arguments.translucency.wanted) request.lights.emplace("--lights", arguments.translucency.lights);

@@ -12,6 +12,7 @@
 #include "arguments/picture_arguments.hpp"
 #include "arguments/translucency_arguments.hpp"
 #include "files/lights_file.hpp"
+#include "files/view_factor.hpp"
 
 namespace dermis::program {
 
@@ -20,6 +21,8 @@ struct SurfaceArguments {
   MaterialArguments materials;
   std::vector<std::string> cryptomatte;  ///< NAME=ID
   std::optional<Lighting> lighting;      ///< none: as the renderer writes it
+  std::vector<std::string> views;        ///< files that show surface which the camera does not see
+  ViewFactor view_factor = ViewFactor::automatic;
   TranslucencyArguments translucency;
 };
 
@@ -30,12 +33,17 @@ struct SurfaceRequest {
   std::vector<NamedProfile> profiles;
   std::vector<MatteId> mattes;       ///< if materials are told by a Cryptomatte
   std::optional<Lighting> lighting;  ///< none: as the renderer writes it
+  std::vector<std::string> views;    ///< files, "####" in them stands for the picture's number
+  ViewFactor view_factor;
   std::optional<LightsFile> lights;  ///< if light is to come through
   TranslucencyOptions translucency;
 };
 
 /// Adds the options that a picture is read by, in groups: channels, camera.
 void add_reading_groups(CLI::App& app, SurfaceArguments& arguments);
+
+/// Adds --view and --view-factor.
+void add_view_arguments(CLI::App& app, SurfaceArguments& arguments);
 
 /// Throws Error(usage) for what is missing or contradicts.
 void check_surface(const SurfaceArguments& arguments);

@@ -32,6 +32,7 @@ Frame SurfaceInput::frame(double mm_per_unit) const {
   Frame frame = loaded.frame();
   frame.camera = camera.camera;
   frame.mm_per_unit = mm_per_unit;
+  frame.views = views;
   return frame;
 }
 
@@ -42,7 +43,7 @@ exr::Picture read_picture(const std::string& path) {
 
 SurfaceInput load_surface(exr::Picture& picture, const std::string& path, const std::string& view,
                           const SurfaceRequest& request, bool needs_beauty) {
-  SurfaceInput input{picture, roles_of(picture, path, request.picture, view), {}, {}, {}, {}, true};
+  SurfaceInput input{picture, roles_of(picture, path, request.picture, view), {}, {}, {}, {}, false, {}, {}, true};
   input.lighting = request.lighting.value_or(input.roles.lighting);
   require_roles(picture, input.roles, request.profiles, !request.mattes.empty());
   if (needs_beauty) exr::require(picture, input.roles, Role::beauty);
@@ -64,6 +65,11 @@ SurfaceInput load_surface(exr::Picture& picture, const std::string& path, const 
     input.camera.source = "none, as nothing scatters";
   }
   input.scatters = scatters();
+  input.takes_out_view_factor = takes_out_view_factor(request, input.roles);
+  if (input.scatters && input.takes_out_view_factor)
+    take_out_view_factor(picture, input.roles, input.camera, input.loaded.light);
+  if (input.scatters) input.loaded_views = load_views(request, path, input.camera);
+  for (const LoadedView& loaded : input.loaded_views) input.views.push_back(loaded.view());
   if (request.lights) input.translucency = load_translucency_images(picture, input.roles);
   return input;
 }

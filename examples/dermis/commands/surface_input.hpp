@@ -11,6 +11,7 @@
 #include "dermis/plan.hpp"
 #include "dermis/translucency.hpp"
 #include "files/loaded_frame.hpp"
+#include "files/loaded_view.hpp"
 #include "report/messages.hpp"
 
 namespace dermis::program {
@@ -30,6 +31,9 @@ struct SurfaceInput {
   exr::FoundCamera camera;
   LoadedFrame loaded;
   std::optional<TranslucencyImages> translucency;
+  bool takes_out_view_factor = false;  ///< of the light
+  std::vector<LoadedView> loaded_views;
+  std::vector<View> views;  ///< of the images in loaded_views
   bool scatters = true;  ///< any pixel; if none does there may be no camera
 
   /// A view of the images, with the camera and nothing to write.

@@ -1,0 +1,274 @@
+// unit_light and hidden_light: the light that enters where the camera of a frame does not look and leaves where it
+// does.
+#pragma OPENCL FP_CONTRACT OFF
+#include "integral/own_share.h"
+
+// A sample is a patch: its light does not come from one point. See METHODS.md.
+#define PATCH 0.08f
+
+// Cells of one material within reach of some pixels: those listed, or all of them if there are too many.
+#define MOST_LISTED 256
+typedef struct {
+  int list[MOST_LISTED];
+  int count;
+  int is_listed;
+} Cells;
+
+// Writes 1 where light is finite and NaN elsewhere, so that weights are summed over the pixels that give light. A
+// work-item has a run of `columns` pixels of a row.
+kernel void unit_light(struct FrameParams f, struct FrameLayouts layouts, global const uchar* light,
+                       global const uchar* albedo, int columns, global float* ones) {
+  const FrameInputs in = {.layouts = &layouts, .light = light, .albedo = albedo};
+  const int y = get_global_id(1);
+  const int x_begin = (int)get_global_id(0) * columns;
+  const RgbRow lights = rgb_row_of(light, &layouts.light, f.width, y);
+  for (int x = x_begin; x < min(x_begin + columns, f.width); x += V) {
+    vint good = is_finite(read_rgb(&lights, x));
+#if HAS_ALBEDO
+    const RgbRow albedos = rgb_row_of(albedo, &layouts.albedo, f.width, y);
+    good &= is_finite(read_rgb(&albedos, x));
+#endif
+    store_floats(ones + plane_index(&f, x, y), select((vfloat)(NAN), (vfloat)(1.0f), good));
+  }
+}
+
+// A region of the frame: the box around the points of one material.
+typedef struct {
+  float low[3], high[3];
+} Box;
+
+static inline void include_points(Box* box, const struct FrameParams* f, const Points* p, vint mine, int x, int y) {
+  const vfloat at[3] = {
+      (convert_vfloat(x + int_lane_numbers()) + 0.5f - f->center_x) * fma(p->z, f->slope_x, f->mm_per_px_x),
+      ((float)y + 0.5f - f->center_y) * fma(p->z, f->slope_y, f->mm_per_px_y), p->z};
+  for (int i = 0; i < 3; ++i) {
+#define INCLUDE_LANE(lane)                                \
+  if (LANE(mine, lane)) {                                 \
+    box->low[i] = fmin(box->low[i], LANE(at[i], lane));   \
+    box->high[i] = fmax(box->high[i], LANE(at[i], lane)); \
+  }
+    EACH_LANE(INCLUDE_LANE)
+#undef INCLUDE_LANE
+  }
+}
+
+static inline void list_cells(Cells* cells, const Box* box, const struct HiddenMaterial* its,
+                              global const struct HiddenCell* all) {
+  cells->count = 0;
+  cells->is_listed = 1;
+  for (int c = 0; c < its->cells; ++c) {
+    global const struct HiddenCell* cell = all + its->first_cell + c;
+    float square = 0.0f;
+    for (int i = 0; i < 3; ++i) {
+      const float gap = fmax(fmax(cell->low[i] - box->high[i], box->low[i] - cell->high[i]), 0.0f);
+      square = fma(gap, gap, square);
+    }
+    if (square >= its->reach_mm * its->reach_mm) continue;
+    if (cells->count == MOST_LISTED) {
+      cells->count = its->cells;
+      cells->is_listed = 0;
+      return;
+    }
+    cells->list[cells->count++] = c;
+  }
+}
+
+typedef struct {
+  vrgb light;
+  vrgb weight;
+} Sum;
+
+// V vectors, mm, or of unit length.
+typedef struct {
+  vfloat x, y, z;
+} Vectors;
+
+static inline vfloat dot_of(const Vectors* a, float x, float y, float z) { return a->x * x + a->y * y + a->z * z; }
+
+// The pixels that light is gathered for.
+typedef struct {
+  Vectors at;
+  Vectors normal;
+#if PROJECTED
+  Vectors across[2];  // the normal makes a frame with them
+#endif
+} Target;
+
+// The normal of the surface, towards the camera, by the slopes of depth.
+static inline Vectors normal_at(const struct FrameParams* f, const InputRows* rows, global const uchar* depth,
+                                const struct ImageParams* layout, vint mine, int m, int x, int y) {
+  const Points p = points_at(f, select((vfloat)(1.0f), read_values(rows->depth, x) * f->mm_per_unit, mine), x, y);
+  vfloat slopes[2];
+  for (int axis = 0; axis < 2; ++axis) {
+    const int dx = axis == 0;
+    const int dy = axis == 1;
+    vfloat ways[2];
+    vint counts[2];
+    for (int side = 0; side < 2; ++side) {
+      const int sign = 2 * side - 1;
+      const int v = clamp(y + sign * dy, 0, f->height - 1);
+      const vint u = x + sign * dx + int_lane_numbers();
+      const vint in_frame = AS_MASK(u >= 0) & AS_MASK(u < f->width) & (vint)(-(v == y + sign * dy));
+      const vint there = load_bytes(rows->material_ids + (v - y) * f->stride + x + sign * dx);
+      const vfloat z = read_values(row_of(depth, layout, f->width, v, 0), x + sign * dx) * f->mm_per_unit;
+      counts[side] = in_frame & AS_MASK((there & MATERIAL_MASK) == m + 1);
+      ways[side] = select_or_zero(counts[side], (float)sign * (z - p.z));
+    }
+    slopes[axis] = minmod(select(ways[1], ways[0], counts[0]), select(ways[0], ways[1], counts[1]));
+  }
+  const Tangent a = tangent_x(f, &p, slopes[0]);
+  const Tangent b = tangent_y(f, &p, slopes[1]);
+  const Vectors n = {a.z * b.y - a.y * b.z, a.x * b.z - a.z * b.x, a.y * b.x - a.x * b.y};
+  const vfloat shorter = rsqrt(n.x * n.x + n.y * n.y + n.z * n.z);
+  const Vectors normal = {n.x * shorter, n.y * shorter, n.z * shorter};
+  return normal;
+}
+
+#if PROJECTED
+// Two unit vectors at right angles to a normal and to each other.
+static inline void make_frame(Target* target) {
+  const Vectors n = target->normal;
+  const vint is_diagonal = AS_MASK(n.x == n.y) & AS_MASK(n.x == n.z);
+  Vectors t = {n.z - n.y, select(n.x - n.z, n.x + n.z, is_diagonal), select(n.y - n.x, -n.y - n.x, is_diagonal)};
+  const vfloat shorter = rsqrt(t.x * t.x + t.y * t.y + t.z * t.z);
+  const Vectors first = {t.x * shorter, t.y * shorter, t.z * shorter};
+  const Vectors second = {n.y * first.z - n.z * first.y, n.z * first.x - n.x * first.z, n.x * first.y - n.y * first.x};
+  target->across[0] = first;
+  target->across[1] = second;
+}
+
+// How Cycles samples a profile: a distance is drawn on a plane across the normal (half of the time) or along it, and
+// projected to the surface. All three could have found a point, and are weighed by the power heuristic, but the change
+// of area is left out: R(r) is multiplied by r sum_a w_a / r_a, with the distance r_a as axis a sees it.
+static inline vfloat projection_factor(const Target* target, global const struct HiddenSample* sample, Vectors way,
+                                       vfloat r_squared) {
+  const Vectors axes[3] = {target->normal, target->across[0], target->across[1]};
+  // A sample is a patch, which no axis sees as a point.
+  const vfloat softened = r_squared + 0.05f * sample->area_mm2;
+  vfloat sum = (vfloat)(0.0f);
+  vfloat all = (vfloat)(1e-12f);
+  for (int a = 0; a < 3; ++a) {
+    const vfloat chance =
+        (a == 0 ? 0.5f : 0.25f) * fabs(dot_of(&axes[a], sample->normal[0], sample->normal[1], sample->normal[2]));
+    const vfloat along = axes[a].x * way.x + axes[a].y * way.y + axes[a].z * way.z;
+    sum += chance * chance * rsqrt(fmax(softened - along * along, (vfloat)(1e-8f)));
+    all += chance * chance;
+  }
+  return sqrt(softened) * sum / all;
+}
+#endif
+
+// Adds the samples from `first` on: those that are near, by 1 - s, or those that are joined, by s, where s goes from 0
+// to 1 between the distances of the material.
+SHARED void add_samples(Sum* sum, const Profile* profile, const struct HiddenMaterial* its, const Target* target,
+                        global const struct HiddenSample* samples, int count, int is_joined) {
+  const float per_mm = 1.0f / (its->far_mm - its->near_mm);
+  for (int i = 0; i < count; ++i) {
+    global const struct HiddenSample* sample = samples + i;
+    const Vectors way = {sample->position[0] - target->at.x, sample->position[1] - target->at.y,
+                         sample->position[2] - target->at.z};
+    const vfloat r_squared = fma(way.x, way.x, fma(way.y, way.y, way.z * way.z));
+    const vfloat t = clamp((sqrt(r_squared) - its->near_mm) * per_mm, (vfloat)(0.0f), (vfloat)(1.0f));
+    const vfloat s = t * t * (3.0f - 2.0f * t);
+    const vfloat share = is_joined ? s : 1.0f - s;
+    const vint counts = AS_MASK(share > 0.0f) & AS_MASK(r_squared < its->reach_mm * its->reach_mm);
+    if (!any_bit(counts)) continue;
+    const vrgb density = radial_at(profile, fma((vfloat)(PATCH), (vfloat)(sample->area_mm2), r_squared));
+    vfloat area = select_or_zero(counts, share * sample->area_mm2);
+#if PROJECTED
+    if (its->is_projected) area *= projection_factor(target, sample, way, r_squared);
+#endif
+    const vrgb weight = times(density, area);
+    sum->weight = sum_rgb(sum->weight, weight);
+    sum->light.r = fma(weight.r, (vfloat)(sample->light[0]), sum->light.r);
+    sum->light.g = fma(weight.g, (vfloat)(sample->light[1]), sum->light.g);
+    sum->light.b = fma(weight.b, (vfloat)(sample->light[2]), sum->light.b);
+  }
+}
+
+// The part of the whole that the light has which enters where the camera looks, and the sum of all.
+static inline vfloat joined_light(vfloat seen, vfloat seen_weight, vfloat hidden, vfloat hidden_weight) {
+  const vfloat its_share = fmin(seen_weight, (vfloat)(1.0f));
+  return fma(seen, its_share, hidden) / fmin(its_share + hidden_weight, (vfloat)(1.0f));
+}
+
+// A work-item has a region of columns x rows pixels. `seen_weights`: of the visible surface, three planes; `deferred`
+// holds the light after scattering over that surface, and receives that of all.
+kernel void hidden_light(struct FrameParams f, struct FrameLayouts layouts, global const uchar* albedo,
+                         global const uchar* depth, global const uchar* mask, global const uchar* material_ids,
+                         global const struct MaterialParams* materials, global const struct ProfileParams* profiles,
+                         global const float4* nodes, global const struct HiddenMaterial* hidden,
+                         global const struct HiddenCell* all_cells, global const struct HiddenSample* samples,
+                         global const float* seen_weights, global float* deferred, int columns, int rows) {
+  const FrameInputs in = {
+      .layouts = &layouts, .albedo = albedo, .depth = depth, .mask = mask, .material_ids = material_ids};
+  const int x_begin = (int)get_global_id(0) * columns;
+  const int y_begin = (int)get_global_id(1) * rows;
+  const int x_end = min(x_begin + columns, f.width);
+  const int y_end = min(y_begin + rows, f.height);
+  for (int m = 0; m < MATERIALS; ++m) {
+    const struct HiddenMaterial its = hidden[m];
+    if (its.cells == 0) continue;
+    Box box = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+    for (int y = y_begin; y < y_end; ++y) {
+      const InputRows inputs = input_rows(&f, &in, y);
+      for (int x = x_begin; x < x_end; x += V) {
+        const vint mine = AS_MASK(load_bytes(inputs.material_ids + x) == m + 1);
+        if (!any_bit(mine)) continue;
+        const Points p = points_at(&f, read_values(inputs.depth, x) * f.mm_per_unit, x, y);
+        include_points(&box, &f, &p, mine, x, y);
+      }
+    }
+    if (!(box.low[0] <= box.high[0])) continue;
+    Cells cells;
+    list_cells(&cells, &box, &its, all_cells);
+    if (cells.count == 0) continue;
+    for (int y = y_begin; y < y_end; ++y) {
+      const InputRows inputs = input_rows(&f, &in, y);
+      for (int x = x_begin; x < x_end; x += V) {
+        const vint mine = AS_MASK(load_bytes(inputs.material_ids + x) == m + 1);
+        if (!any_bit(mine)) continue;
+        const vfloat z = select((vfloat)(1.0f), read_values(inputs.depth, x) * f.mm_per_unit, mine);
+        Target target;
+        const Vectors place = {
+            (convert_vfloat(x + int_lane_numbers()) + 0.5f - f.center_x) * fma(z, f.slope_x, f.mm_per_px_x),
+            ((float)y + 0.5f - f.center_y) * fma(z, f.slope_y, f.mm_per_px_y), z};
+        target.at = place;
+        target.normal = normal_at(&f, &inputs, depth, &layouts.depth, mine, m, x, y);
+#if PROJECTED
+        make_frame(&target);
+#endif
+        vrgb reciprocal = broadcast_rgb((vfloat)(1.0f));
+#if PIXEL_WIDTH
+        vfloat its_mask = (vfloat)(1.0f);
+#if HAS_MASK
+        its_mask = read_values(inputs.mask, x);
+#endif
+        const vrgb k = width_factor(materials + m, read_albedo(&inputs, x), its_mask);
+        const vrgb safe = select_rgb(reciprocal, k, mine);
+        reciprocal.r = 1.0f / safe.r;
+        reciprocal.g = 1.0f / safe.g;
+        reciprocal.b = 1.0f / safe.b;
+#endif
+        const Profile profile = profile_of(profiles + m, nodes, reciprocal);
+        Sum sum = {broadcast_rgb((vfloat)(0.0f)), broadcast_rgb((vfloat)(0.0f))};
+        for (int i = 0; i < cells.count; ++i) {
+          global const struct HiddenCell* cell = all_cells + its.first_cell + (cells.is_listed ? cells.list[i] : i);
+          add_samples(&sum, &profile, &its, &target, samples + cell->first_sample, cell->samples, 0);
+          add_samples(&sum, &profile, &its, &target, samples + cell->first_joined, cell->joined, 1);
+        }
+        const vrgb squared = product(reciprocal, reciprocal);
+        const vrgb light = product(sum.light, squared);
+        const vrgb weight = product(sum.weight, squared);
+        const size_t index = plane_index(&f, x, y);
+        const vrgb seen = load_rgb(deferred, plane_size(&f), index);
+        const vrgb seen_weight = load_rgb(seen_weights, plane_size(&f), index);
+        const vrgb all = {joined_light(seen.r, seen_weight.r, light.r, weight.r),
+                          joined_light(seen.g, seen_weight.g, light.g, weight.g),
+                          joined_light(seen.b, seen_weight.b, light.b, weight.b)};
+        const vint reached = mine & AS_MASK(weight.r + weight.g + weight.b > 0.0f);
+        store_rgb(deferred, plane_size(&f), index, select_rgb(seen, all, reached));
+      }
+    }
+  }
+}
