@@ -41,7 +41,7 @@ TEST_CASE("bad profiles are refused by name and value", "[profile]") {
   CHECK_THROWS_AS(Profile::dipole(ones, ones, NAN), dermis::Error);
   CHECK_THROWS_AS(Profile::artist(ones, ones, NAN), dermis::Error);
   CHECK_THROWS_AS(Profile::burley_mfp(ones, {1, NAN, 1}), dermis::Error);
-  CHECK_THROWS_WITH(dermis::preset("skni"), Catch::Contains("skni") && Catch::Contains("marble, milk"));
+  CHECK_THROWS_WITH(dermis::preset("skni"), Catch::Contains("skni") && Catch::Contains("marble, marble-walk, milk"));
 }
 
 TEST_CASE("no length and no coefficient is out of range", "[profile]") {
