@@ -52,6 +52,7 @@ expect_failure(2 --all --all)
 expect_failure(2 --min-ms --min-ms -1)
 expect_failure(6 --json --filter naive --json ${FOLDER}/missing/bench.json)
 expect_failure(6 --csv --filter naive --csv ${FOLDER}/missing/bench.csv)
+expect_failure(6 --walk-table --walk-table ${FOLDER}/missing/walk_table.cpp)
 
 # The default point is among the default cases, and names are unique.
 execute_process(COMMAND ${BENCH} --list RESULT_VARIABLE code OUTPUT_VARIABLE names)

@@ -16,6 +16,7 @@
 #include "report/progress_bar.hpp"
 #include "report/report.hpp"
 #include "report/stress_report.hpp"
+#include "walk/walk_table.hpp"
 
 namespace {
 
@@ -39,6 +40,7 @@ struct Arguments {
   std::string csv;
   std::string plot;
   std::string paper;
+  std::string walk_table;
   bool stress = false;
   std::string against;
   std::string start_up_child;  ///< the folder of its caches
@@ -151,6 +153,10 @@ void run(const Arguments& arguments) {
     throw Error(ErrorCode::usage, "--min-ms", fmt::format("{}", arguments.min_ms), "milliseconds from 0 on");
   }
   if (arguments.answers) return answer(arguments);
+  if (!arguments.walk_table.empty()) {
+    program::check_writable("--walk-table", arguments.walk_table);
+    return program::write_text("--walk-table", arguments.walk_table, bench::make_walk_table());
+  }
   if (!arguments.against.empty() && (arguments.stress || !arguments.paper.empty())) {
     throw Error(ErrorCode::usage, "--against", arguments.stress ? "--stress" : "--paper", "cases that have times");
   }
@@ -193,6 +199,8 @@ void add_options(CLI::App& app, Arguments& arguments) {
   app.add_option("--paper", arguments.paper,
                  "write the claims of Jimenez et al. 2015 beside what is measured into this folder: table.md, "
                  "claims.json and figures");
+  app.add_option("--walk-table", arguments.walk_table,
+                 "instead: make src/profile/walk_table.cpp, the table behind the profile of random walks, again");
   app.add_option("--start-up-child", arguments.start_up_child)->group("");
   app.add_flag(bench::answer_option, arguments.answers)->group("");
 }

@@ -48,6 +48,8 @@ std::vector<Preset> make_presets() {
        measured({.657, .786, .900}, {.00053, .00123, .00213}, {.88, .84, .80})},
       {"ketchup", jensen, measured({.18, .07, .03}, {.061, .97, 1.45}, {.16, .01, .00})},
       {"marble", jensen, measured({2.19, 2.62, 3.00}, {.0021, .0041, .0071}, {.83, .79, .75})},
+      {"marble-walk", "the ball of the sample scene: random walk of Cycles, radius 8.5/5.6/4 mm, albedo .83/.79/.75",
+       Profile::random_walk_cycles({8.5, 5.6, 4}, {.83, .79, .75})},
       {"milk", jensen, measured({2.55, 3.21, 3.77}, {.0011, .0024, .014}, {.91, .88, .76})},
       {"potato", jensen, measured({.68, .70, .55}, {.0024, .0090, .12}, {.77, .62, .21})},
       {"skim-milk", jensen, measured({.70, 1.22, 1.90}, {.0014, .0025, .0142}, {.81, .81, .69})},
@@ -59,8 +61,11 @@ std::vector<Preset> make_presets() {
                            {1.99, {.358, .004, .000}},
                            {7.41, {.078, .000, .000}}})},
       {"skin-measured", jensen, measured({.74, .88, 1.01}, {.032, .17, .48}, {.44, .22, .13})},
+      {"skin-walk", "the head of the sample scene: random walk of Cycles, radius 9/3.5/1.8 mm, mean albedo .71/.47/.39",
+       Profile::random_walk_cycles({9, 3.5, 1.8}, {.71, .47, .39})},
       {"wax", "the ring of the sample scene: Cycles radius 12/7/2 mm, albedo .8/.55/.2",
        Profile::burley_cycles({12, 7, 2}, {.80, .55, .20})},
+      {"wax-walk", "the same as a random walk of Cycles", Profile::random_walk_cycles({12, 7, 2}, {.80, .55, .20})},
   };
 }
 

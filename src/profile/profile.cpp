@@ -12,8 +12,10 @@
 #include "dermis/error.hpp"
 #include "profile/burley_curve.hpp"
 #include "profile/dipole_curve.hpp"
+#include "profile/exponential_curve.hpp"
 #include "profile/gaussian_curve.hpp"
 #include "profile/profile_content.hpp"
+#include "profile/random_walk.hpp"
 #include "profile/table_curve.hpp"
 
 namespace dermis {
@@ -139,6 +141,21 @@ Profile Profile::burley_cycles(const Rgb& radius_mm) {
   Profile profile(for_each_channel([&](int c) { return std::make_shared<BurleyCurve>(radius_mm[c] / (4 * pi)); }));
   profile.width_follows_albedo_ = true;
   return profile;
+}
+
+Profile Profile::random_walk_cycles(const Rgb& radius_mm, const Rgb& albedo) {
+  require_lengths(radius_mm, "radius_mm");
+  require_shares(albedo, "albedo");
+  return Profile(for_each_channel([&](int c) {
+    return std::make_shared<ExponentialCurve>(walk_terms(walk_mfp(radius_mm[c], albedo[c]), albedo[c]));
+  }));
+}
+
+Profile Profile::random_walk_mfp(const Rgb& mfp_mm, const Rgb& albedo) {
+  require_lengths(mfp_mm, "mfp_mm");
+  require_shares(albedo, "albedo");
+  return Profile(
+      for_each_channel([&](int c) { return std::make_shared<ExponentialCurve>(walk_terms(mfp_mm[c], albedo[c])); }));
 }
 
 Profile Profile::gaussians(const std::vector<GaussianTerm>& terms) {

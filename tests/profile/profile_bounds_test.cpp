@@ -25,6 +25,10 @@ TEST_CASE("bad profiles are refused by name and value", "[profile]") {
   CHECK_THROWS_WITH(Profile::burley_mfp({1, 0, 3}, ones), "mfp_mm: got 0, want 1e-9..1e9 mm per channel");
   CHECK_THROWS_WITH(Profile::burley_mfp(ones, {1, -.1, 1}), "albedo: got -0.1, want 0..1 per channel");
   CHECK_THROWS_WITH(Profile::burley_cycles(ones, {0.5, 1.5, 0.5}), "albedo: got 1.5, want 0..1 per channel");
+  CHECK_THROWS_WITH(Profile::random_walk_cycles({1, 0, 3}, ones), "radius_mm: got 0, want 1e-9..1e9 mm per channel");
+  CHECK_THROWS_WITH(Profile::random_walk_mfp({1, 2, 2e9}, ones), "mfp_mm: got 2e+09, want 1e-9..1e9 mm per channel");
+  CHECK_THROWS_WITH(Profile::random_walk_cycles(ones, {1, 1, -1}), "albedo: got -1, want 0..1 per channel");
+  CHECK_THROWS_WITH(Profile::random_walk_mfp(ones, {1, 2, 1}), "albedo: got 2, want 0..1 per channel");
   CHECK_THROWS_WITH(Profile::artist({1, 1, 2e9}, ones, .5), "near_mm: got 2e+09, want 1e-9..1e9 mm per channel");
   CHECK_THROWS_WITH(Profile::artist(ones, {1, 1, 0}, .5), "far_mm: got 0, want 1e-9..1e9 mm per channel");
   CHECK_THROWS_WITH(Profile::artist(ones, ones, 1.5), "near_weight: got 1.5, want 0..1");
@@ -37,7 +41,7 @@ TEST_CASE("bad profiles are refused by name and value", "[profile]") {
   CHECK_THROWS_AS(Profile::dipole(ones, ones, NAN), dermis::Error);
   CHECK_THROWS_AS(Profile::artist(ones, ones, NAN), dermis::Error);
   CHECK_THROWS_AS(Profile::burley_mfp(ones, {1, NAN, 1}), dermis::Error);
-  CHECK_THROWS_WITH(dermis::preset("skni"), Catch::Contains("skni") && Catch::Contains("marble, milk"));
+  CHECK_THROWS_WITH(dermis::preset("skni"), Catch::Contains("skni") && Catch::Contains("marble, marble-walk, milk"));
 }
 
 TEST_CASE("no length and no coefficient is out of range", "[profile]") {
@@ -50,6 +54,8 @@ TEST_CASE("no length and no coefficient is out of range", "[profile]") {
       CHECK_THROWS_AS(Profile::burley_mfp(values, ones), dermis::Error);
       CHECK_THROWS_AS(Profile::burley_cycles(values), dermis::Error);
       CHECK_THROWS_AS(Profile::burley_cycles(values, ones), dermis::Error);
+      CHECK_THROWS_AS(Profile::random_walk_cycles(values, ones), dermis::Error);
+      CHECK_THROWS_AS(Profile::random_walk_mfp(values, ones), dermis::Error);
       CHECK_THROWS_AS(Profile::artist(values, ones, .5), dermis::Error);
       CHECK_THROWS_AS(Profile::artist(ones, values, .5), dermis::Error);
       CHECK_THROWS_AS(Profile::dipole(values, ones), dermis::Error);
@@ -105,6 +111,10 @@ TEST_CASE("profiles on the border of their ranges have numbers everywhere", "[pr
     profiles.push_back(Profile::burley(all(end)));
     profiles.push_back(Profile::burley_mfp(all(end), all(0)));
     profiles.push_back(Profile::burley_cycles(all(end), all(1)));
+    for (const double albedo : {0.0, 1.0}) {
+      profiles.push_back(Profile::random_walk_cycles(all(end), all(albedo)));
+      profiles.push_back(Profile::random_walk_mfp(all(end), all(albedo)));
+    }
     profiles.push_back(Profile::artist(all(end), all(1e9), .5));
     profiles.push_back(Profile::gaussians({{end * end, ones}}));
     for (const double other : {1e-9, 1e9}) {

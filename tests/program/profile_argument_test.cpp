@@ -61,6 +61,9 @@ TEST_CASE("a profile in numbers is the preset of the same numbers") {
   filtered.check_same("artist:0.25/0.08/0.02,1/0.3/0.05,w=0.6", "artist-production");
   CHECK(relative_l2(filtered.with("better-dipole:0.74/0.88/1.01,0.032/0.17/0.48"), filtered.with("dipole-skin1"),
                     "ViewLayer.sss") > 1e-4);
+  filtered.check_same("walk:12/7/2,albedo=0.8/0.55/0.2", "wax-walk");
+  CHECK(relative_l2(filtered.with("walk:12/7/2,mfp,albedo=0.8/0.55/0.2"), filtered.with("wax-walk"), "ViewLayer.sss") >
+        1e-2);
   // d = l / s(.8), s(.8) = 1.1
   CHECK(relative_l2(filtered.with("burley:1.1/0.55/0.275,mfp,albedo=0.8/0.8/0.8"), filtered.with("burley:1/0.5/0.25"),
                     "ViewLayer.sss") <= 1e-5);
@@ -95,7 +98,8 @@ TEST_CASE("results name the file of a table without its folders") {
 TEST_CASE("help tells every kind of profile") {
   const std::string help = run_well({"filter", "--help"});
   for (const char* kind : {"burley:DR/DG/DB", "burley:RR/RG/RB,cycles", "burley:LR/LG/LB,mfp,albedo=AR/AG/AB",
-                           "gaussians:FILE.json", "artist:NR/NG/NB,FR/FG/FB,w=W", "dipole:SR/SG/SB,AR/AG/AB[,eta=E]",
+                           "walk:RR/RG/RB,albedo=AR/AG/AB", "walk:LR/LG/LB,mfp,albedo=AR/AG/AB", "gaussians:FILE.json",
+                           "artist:NR/NG/NB,FR/FG/FB,w=W", "dipole:SR/SG/SB,AR/AG/AB[,eta=E]",
                            "better-dipole:SR/SG/SB,AR/AG/AB[,eta=E]", "table:FILE.csv"}) {
     INFO(kind);
     CHECK(help.find(kind) != std::string::npos);
@@ -113,6 +117,14 @@ TEST_CASE("misspelled profiles are usage errors") {
       {"burley:1/2/3,mfp", {"burley:R/G/B,mfp,albedo=R/G/B"}},
       {"burley:1/2/3,mfp,albedo=1/2/1", {"albedo=1/2/1", "0 to 1"}},
       {"burley:1/2/3,mfp,x=1/1/1", {"x=1", "albedo="}},
+      {"walk", {"walk:R/G/B[,mfp],albedo=R/G/B"}},
+      {"walk:1/2/3", {"walk:R/G/B,albedo=R/G/B", "walk:12/7/2,albedo=0.8/0.55/0.2"}},
+      {"walk:1/2/0,albedo=1/1/1", {"> 0"}},
+      {"walk:1/2/3,cycles,albedo=1/1/1", {"walk:R/G/B,mfp,albedo=R/G/B"}},
+      {"walk:1/2/3,mfp", {"albedo= and three numbers from 0 to 1"}},
+      {"walk:1/2/3,albedo=1/1", {"albedo= and three numbers from 0 to 1"}},
+      {"walk:1/2/3,albedo=1/2/1", {"0 to 1"}},
+      {"walk:1/2/1e10,mfp,albedo=1/1/1", {"mfp_mm: got 1e+10", "1e-9..1e9"}},
       {"dipole:1/2/3", {"dipole:", "1/mm", "eta=1.3"}},
       {"dipole:1/2,1/2/3", {"three coefficients"}},
       {"dipole:1/2/3,0/1/1", {"> 0"}},

@@ -65,6 +65,15 @@ struct Spelling {
   [[noreturn]] void malformed(std::string_view wanted) const { throw Error(ErrorCode::usage, argument, text, wanted); }
 };
 
+/// albedo=R/G/B
+Rgb parse_albedo(const Spelling& spelling, std::string_view text) {
+  const bool named = text.starts_with(albedo_prefix);
+  const auto albedo = named ? parse_rgb(text.substr(albedo_prefix.size())) : std::nullopt;
+  if (!albedo || !all_0_to_1(*albedo))
+    spelling.malformed("albedo= and three numbers from 0 to 1, as albedo=0.8/0.6/0.5");
+  return *albedo;
+}
+
 Profile parse_burley(const Spelling& spelling) {
   const auto parts = split(spelling.rest(), ',');
   const auto lengths = parse_rgb(parts[0]);
@@ -76,11 +85,20 @@ Profile parse_burley(const Spelling& spelling) {
     spelling.malformed(
         "burley:R/G/B, burley:R/G/B,cycles, burley:R/G/B,cycles,albedo=R/G/B or burley:R/G/B,mfp,albedo=R/G/B");
   if (parts.size() == 2) return Profile::burley_cycles(*lengths);
-  const bool named = parts[2].starts_with(albedo_prefix);
-  const auto albedo = named ? parse_rgb(parts[2].substr(albedo_prefix.size())) : std::nullopt;
-  if (!albedo || !all_0_to_1(*albedo))
-    spelling.malformed("albedo= and three numbers from 0 to 1, as albedo=0.8/0.6/0.5");
-  return path ? Profile::burley_mfp(*lengths, *albedo) : Profile::burley_cycles(*lengths, *albedo);
+  const Rgb albedo = parse_albedo(spelling, parts[2]);
+  return path ? Profile::burley_mfp(*lengths, albedo) : Profile::burley_cycles(*lengths, albedo);
+}
+
+Profile parse_walk(const Spelling& spelling) {
+  const auto parts = split(spelling.rest(), ',');
+  const auto lengths = parse_rgb(parts[0]);
+  const bool path = parts.size() == 3 && parts[1] == "mfp";
+  if (!lengths || !all_above_zero(*lengths) || (parts.size() != 2 && !path))
+    spelling.malformed(
+        "walk:R/G/B,albedo=R/G/B or walk:R/G/B,mfp,albedo=R/G/B, lengths in mm, each > 0, as "
+        "walk:12/7/2,albedo=0.8/0.55/0.2");
+  const Rgb albedo = parse_albedo(spelling, parts.back());
+  return path ? Profile::random_walk_mfp(*lengths, albedo) : Profile::random_walk_cycles(*lengths, albedo);
 }
 
 Profile parse_artist(const Spelling& spelling) {
@@ -137,6 +155,11 @@ constexpr std::array kinds = {
          "                             the same with a constant albedo\n"
          "  burley:LR/LG/LB,mfp,albedo=AR/AG/AB\n"
          "                             mean free path in mm and albedo\n"},
+    Kind{"walk:", parse_walk, false, "walk:R/G/B[,mfp],albedo=R/G/B",
+         "  walk:RR/RG/RB,albedo=AR/AG/AB\n"
+         "                             Cycles' random walk, by subsurface radius in mm and constant albedo\n"
+         "  walk:LR/LG/LB,mfp,albedo=AR/AG/AB\n"
+         "                             the same by mean free path in mm\n"},
     Kind{"gaussians:", parse_gaussians, true, "gaussians:FILE.json",
          "  gaussians:FILE.json        {\"terms\": [{\"variance_mm2\": v, \"weight\": [r, g, b]}, ...]}\n"},
     Kind{"artist:", parse_artist, false, "artist:R/G/B,R/G/B,w=W",
