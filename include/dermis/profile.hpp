@@ -134,6 +134,12 @@ class Profile {
   /// R(r / k) / k^2 with k = width_at(albedo) per channel.
   bool width_follows_albedo() const { return width_follows_albedo_; }
 
+  /// The same profile for surfaces that bend or lie across from each other as Cycles samples it: by distances on three
+  /// planes, projected to the surface, without the change of area. Then more light comes through thin parts than by the
+  /// distance in space. It tells for the light of views alone.
+  Profile projected() const;
+  bool is_projected() const { return is_projected_; }
+
   /// k for an albedo (clamped to 0..1): 1 / s(A) where the width follows the albedo, else 1.
   double width_at(double albedo) const;
 
@@ -144,6 +150,7 @@ class Profile {
 
   std::array<std::shared_ptr<const RadialCurve>, 3> curves_;
   bool width_follows_albedo_ = false;
+  bool is_projected_ = false;
 };
 
 /// A named profile and where its numbers come from.

@@ -158,6 +158,12 @@ Profile Profile::random_walk_mfp(const Rgb& mfp_mm, const Rgb& albedo) {
       for_each_channel([&](int c) { return std::make_shared<ExponentialCurve>(walk_terms(mfp_mm[c], albedo[c])); }));
 }
 
+Profile Profile::projected() const {
+  Profile profile = *this;
+  profile.is_projected_ = true;
+  return profile;
+}
+
 Profile Profile::gaussians(const std::vector<GaussianTerm>& terms) {
   Rgb total{};
   for (const GaussianTerm& term : terms) {
@@ -227,7 +233,7 @@ Profile Profile::tabulated(const std::vector<TableRow>& rows) {
 
 bool Profile::operator==(const Profile& other) const {
   const auto same = [](const auto& a, const auto& b) { return a == b || *a == *b; };
-  return width_follows_albedo_ == other.width_follows_albedo_ &&
+  return width_follows_albedo_ == other.width_follows_albedo_ && is_projected_ == other.is_projected_ &&
          std::equal(curves_.begin(), curves_.end(), other.curves_.begin(), same);
 }
 
@@ -239,6 +245,7 @@ ProfileContent content_of(const Profile& profile) {
     content.numbers[c] = curve.numbers();
   }
   content.width_follows_albedo = profile.width_follows_albedo_;
+  content.is_projected = profile.is_projected_;
   return content;
 }
 

@@ -14,6 +14,7 @@ struct ProfileContent {
   std::array<std::string, 3> kinds;  ///< of the curve of each channel: a name that holds for one build of the library
   std::array<std::vector<double>, 3> numbers;  ///< that the curve is made of
   bool width_follows_albedo = false;
+  bool is_projected = false;
 };
 
 ProfileContent content_of(const Profile& profile);

@@ -131,17 +131,20 @@ struct HiddenLight::State {
   cl::Program pixels;                    ///< views/view_pixels.cl
   cl::Program gather;                    ///< views/hidden_light.cl
   ProfileTables profiles;
-  std::vector<double> reach_mm;  ///< of each material
+  std::vector<HiddenProfile> hidden;  ///< of each material
 };
 
 HiddenLight::HiddenLight(const PlanSettings& settings) : state_(std::make_unique<State>()) {
   if (!settings.frames.depth) {
     throw Error(ErrorCode::role_missing, "depth", "no image", "a depth image, for frames with views");
   }
+  const bool any_projected = std::any_of(settings.materials.begin(), settings.materials.end(),
+                                         [](const Material& its) { return its.profile.is_projected(); });
   const std::string options = common_options(settings) +
                               build_constant("LIT", settings.options.lighting == Lighting::lit ? 1 : 0) +
                               profile_table_constant();
-  const std::string by_lanes = options + build_constant("PROJECTED", getenv("PROJ") ? 1 : 0) + build_constant("V", settings.item_is_pixel() ? 1 : BLOCK);
+  const std::string by_lanes = options + build_constant("PROJECTED", any_projected ? 1 : 0) +
+                               build_constant("V", settings.item_is_pixel() ? 1 : BLOCK);
   state_->weights = build_plan(weights_of(settings));
   state_->pixels = build_program(settings.device, {"views/view_pixels.cl"}, options + build_constant("V", 1));
   state_->gather = build_program(settings.device, {"views/hidden_light.cl"}, by_lanes);
@@ -149,7 +152,7 @@ HiddenLight::HiddenLight(const PlanSettings& settings) : state_(std::make_unique
   for (const Material& its : settings.materials) {
     double reach_mm = 0;
     for (int c = 0; c < 3; ++c) reach_mm = std::max(reach_mm, its.profile.radius(c, share_within_reach));
-    state_->reach_mm.push_back(reach_mm);
+    state_->hidden.push_back({reach_mm, its.profile.is_projected()});
   }
 }
 
@@ -163,7 +166,7 @@ std::vector<ViewStats> HiddenLight::add_to(FrameRun& run, const Frame& frame) co
     stats.push_back(count(views.back()));
     check_place(stats.back(), views.size() - 1);
   }
-  const HiddenSamples samples = hidden_samples(views, state_->reach_mm);
+  const HiddenSamples samples = hidden_samples(views, state_->hidden);
   if (samples.samples.empty()) return stats;
   const BorrowedMemory<RunMemory> memory(state_->weights->memories, run.context(), run.queue(),
                                          state_->weights->run_sizes(frame.width, frame.height));
@@ -232,9 +235,15 @@ void HiddenLight::gather(FrameRun& run, const HiddenSamples& samples, const cl::
   set_arguments(kernel, run.frame(), run.images().layouts(), run.images().buffers({ImageName::albedo, depth, mask}),
                 run.memory().material_ids, run.materials(), state_->profiles.profiles, state_->profiles.nodes,
                 materials, cells, rows, seen_weights, run.deferred(), side, side);
-  run.queue().finish(); timespec t0,t1; clock_gettime(CLOCK_MONOTONIC,&t0);
+  run.queue().finish();
+  timespec t0, t1;
+  clock_gettime(CLOCK_MONOTONIC, &t0);
   run.launch(kernel, parts_of(run.size().width, side), parts_of(run.size().height, side), run.local_size());
-  run.queue().finish(); clock_gettime(CLOCK_MONOTONIC,&t1); fprintf(stderr,"GATHER %.1f ms, %zu samples %zu cells\n",double(t1.tv_sec-t0.tv_sec)*1e3+double(t1.tv_nsec-t0.tv_nsec)/1e6,samples.samples.size(),samples.cells.size());
+  run.queue().finish();
+  clock_gettime(CLOCK_MONOTONIC, &t1);
+  fprintf(stderr, "GATHER %.1f ms, %zu samples %zu cells\n",
+          double(t1.tv_sec - t0.tv_sec) * 1e3 + double(t1.tv_nsec - t0.tv_nsec) / 1e6, samples.samples.size(),
+          samples.cells.size());
 }
 
 }  // namespace dermis

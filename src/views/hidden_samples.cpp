@@ -28,8 +28,8 @@ constexpr int most_parts = 4;
 constexpr double longest_way = 12.5;
 
 /// A patch lies in the pixel of another view if their normals are within 78 degrees, its middle is no farther from that
-/// of the pixel than so many times the ways to the next pixels (with some room, as a surface bends), and no farther from
-/// its plane than its side.
+/// of the pixel than so many times the ways to the next pixels (with some room, as a surface bends), and no farther
+/// from its plane than its side.
 constexpr double least_agreement = 0.2;
 constexpr double half_pixel = 0.55;
 
@@ -224,13 +224,14 @@ std::vector<Sample> joined(std::span<const Sample> samples, double side_mm) {
 }
 
 /// Appends the cells of one material.
-void append_cells(std::vector<Sample>& samples, double reach_mm, HiddenSamples& to) {
+void append_cells(std::vector<Sample>& samples, const HiddenProfile& profile, HiddenSamples& to) {
+  const double reach_mm = profile.reach_mm;
   params::HiddenMaterial material{};
   material.first_cell = static_cast<int>(to.cells.size());
   material.reach_mm = static_cast<float>(reach_mm);
   material.near_mm = static_cast<float>(near_reach * reach_mm);
   material.far_mm = static_cast<float>(far_reach * reach_mm);
-  material.is_projected=1;
+  material.is_projected = profile.is_projected ? 1 : 0;
   const double side_mm = cell_side * reach_mm;
   std::stable_sort(samples.begin(), samples.end(),
                    [&](const Sample& a, const Sample& b) { return cube_of(a.at, side_mm) < cube_of(b.at, side_mm); });
@@ -261,14 +262,14 @@ void append_cells(std::vector<Sample>& samples, double reach_mm, HiddenSamples& 
 
 }  // namespace
 
-HiddenSamples hidden_samples(std::span<const ViewPixels> views, std::span<const double> reach_mm) {
+HiddenSamples hidden_samples(std::span<const ViewPixels> views, std::span<const HiddenProfile> profiles) {
   std::vector<std::vector<Patch>> patches;
   for (const ViewPixels& view : views) patches.push_back(patches_of(view));
   std::vector<PatchGrid> grids;
   if (views.size() > 1) {
     for (const std::vector<Patch>& its : patches) grids.emplace_back(its);
   }
-  std::vector<std::vector<Sample>> by_material(reach_mm.size());
+  std::vector<std::vector<Sample>> by_material(profiles.size());
   for (std::size_t v = 0; v < patches.size(); ++v) {
     for (const Patch& patch : patches[v]) {
       if (!patch.is_hidden) continue;
@@ -276,11 +277,11 @@ HiddenSamples hidden_samples(std::span<const ViewPixels> views, std::span<const 
       for (std::size_t other = 0; other < grids.size(); ++other) {
         if (other != v) density += grids[other].density_at(patch);
       }
-      split(patch, 1 / density, reach_mm[patch.material], by_material[patch.material]);
+      split(patch, 1 / density, profiles[patch.material].reach_mm, by_material[patch.material]);
     }
   }
   HiddenSamples result;
-  for (std::size_t m = 0; m < reach_mm.size(); ++m) append_cells(by_material[m], reach_mm[m], result);
+  for (std::size_t m = 0; m < profiles.size(); ++m) append_cells(by_material[m], profiles[m], result);
   return result;
 }
 

@@ -74,8 +74,7 @@ Rgb parse_albedo(const Spelling& spelling, std::string_view text) {
   return *albedo;
 }
 
-Profile parse_burley(const Spelling& spelling) {
-  const auto parts = split(spelling.rest(), ',');
+Profile burley_of(const Spelling& spelling, const std::vector<std::string_view>& parts) {
   const auto lengths = parse_rgb(parts[0]);
   if (!lengths || !all_above_zero(*lengths))
     spelling.malformed("burley: and three lengths in mm, each > 0, as burley:1.5/0.7/0.4");
@@ -87,6 +86,15 @@ Profile parse_burley(const Spelling& spelling) {
   if (parts.size() == 2) return Profile::burley_cycles(*lengths);
   const Rgb albedo = parse_albedo(spelling, parts[2]);
   return path ? Profile::burley_mfp(*lengths, albedo) : Profile::burley_cycles(*lengths, albedo);
+}
+
+Profile parse_burley(const Spelling& spelling) {
+  auto parts = split(spelling.rest(), ',');
+  if (parts.size() > 1 && parts.back() == "projected") {
+    parts.pop_back();
+    return burley_of(spelling, parts).projected();
+  }
+  return burley_of(spelling, parts);
 }
 
 Profile parse_walk(const Spelling& spelling) {
@@ -148,13 +156,16 @@ struct Kind {
 };
 
 constexpr std::array kinds = {
-    Kind{"burley:", parse_burley, false, "burley:R/G/B[,cycles[,albedo=R/G/B]], burley:R/G/B,mfp,albedo=R/G/B",
+    Kind{"burley:", parse_burley, false,
+         "burley:R/G/B[,cycles[,albedo=R/G/B]], burley:R/G/B,mfp,albedo=R/G/B; and ,projected",
          "  burley:DR/DG/DB            Burley's diffusion, d = 1/s in mm per channel\n"
          "  burley:RR/RG/RB,cycles     Cycles' subsurface radius in mm, with the albedo of each pixel\n"
          "  burley:RR/RG/RB,cycles,albedo=AR/AG/AB\n"
          "                             the same with a constant albedo\n"
          "  burley:LR/LG/LB,mfp,albedo=AR/AG/AB\n"
-         "                             mean free path in mm and albedo\n"},
+         "                             mean free path in mm and albedo\n"
+         "  burley:...,projected       light of views (--view) as Cycles samples it, which lets more through thin "
+         "parts\n"},
     Kind{"walk:", parse_walk, false, "walk:R/G/B[,mfp],albedo=R/G/B",
          "  walk:RR/RG/RB,albedo=AR/AG/AB\n"
          "                             Cycles' random walk, by subsurface radius in mm and constant albedo\n"
