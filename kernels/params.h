@@ -135,11 +135,23 @@ struct HiddenCell {
   int first_joined, joined;
 };
 
+// How light goes from where it enters to where it leaves.
+#define CROSSING_DISTANCE 0   // the profile tells, by their distance
+#define CROSSING_PROJECTED 1  // Profile::is_projected
+#define CROSSING_WALK 2       // the profile is that of random walks, and surfaces bend
+
+// Gains of a slab over the profile, at so many thicknesses.
+#define SLAB_NODES 32
+
 struct HiddenMaterial {
   int first_cell, cells;
   float reach_mm;
   float near_mm, far_mm;  // up to the one samples count one by one, from the other on joined, in between both in part
-  int is_projected;       // Profile::is_projected
+  int crossing;
+  float slab_step_mm;  // of walks: from one thickness of slab_gain to the next, the first of which is 0
+  float bend_mm[3];    // how much a curvature of 1/mm adds
+  float mfp2_mm2[3];   // square of the mean free path
+  float slab_gain[SLAB_NODES][3];
 };
 
 // The choices of a run; each member is 0 or 1.

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -124,6 +125,14 @@ class Profile {
   /// The half-width x of the strip |x'| <= x that holds `share` (in [0, 1)) of a(x).
   double half_width(int channel, double share) const;
 
+  /// The mean free path in the medium, 1 / (scattering + absorption) per mm, where the profile is one of a medium:
+  /// random walks, dipoles (reduced scattering), and Burley's profile of a mean free path or a Cycles radius; else
+  /// none.
+  std::optional<double> mfp_mm(int channel) const;
+
+  /// What a scattering leaves of the light, 0..1, where the profile is a random walk; else none.
+  std::optional<double> scattering_albedo(int channel) const;
+
   /// The channel whose light spreads furthest.
   int widest_channel() const;
 
@@ -145,10 +154,13 @@ class Profile {
 
  private:
   friend struct ProfileContent content_of(const Profile& profile);
-  explicit Profile(std::array<std::shared_ptr<const RadialCurve>, 3> curves);
+  explicit Profile(std::array<std::shared_ptr<const RadialCurve>, 3> curves, std::optional<Rgb> mfp_mm = {});
+  static Profile walk_of(const Rgb& mfp_mm, const Rgb& albedo);
   const RadialCurve& curve(int channel) const { return *curves_[static_cast<std::size_t>(channel)]; }
 
   std::array<std::shared_ptr<const RadialCurve>, 3> curves_;
+  std::optional<Rgb> mfp_mm_;
+  std::optional<Rgb> scattering_albedo_;
   bool width_follows_albedo_ = false;
   bool is_projected_ = false;
 };

@@ -52,7 +52,7 @@ static inline void include_points(Box* box, const struct FrameParams* f, const P
   }
 }
 
-static inline void list_cells(Cells* cells, const Box* box, const struct HiddenMaterial* its,
+static inline void list_cells(Cells* cells, const Box* box, global const struct HiddenMaterial* its,
                               global const struct HiddenCell* all) {
   cells->count = 0;
   cells->is_listed = 1;
@@ -76,6 +76,9 @@ static inline void list_cells(Cells* cells, const Box* box, const struct HiddenM
 typedef struct {
   vrgb light;
   vrgb weight;
+#if WALK
+  vrgb bent;  // what curvature adds to the light
+#endif
 } Sum;
 
 // V vectors, mm, or of unit length.
@@ -158,9 +161,50 @@ static inline vfloat projection_factor(const Target* target, global const struct
 }
 #endif
 
+#if WALK
+// The gain of a slab of this thickness, in one channel.
+static inline vfloat slab_gain(global const struct HiddenMaterial* its, int channel, vfloat thickness_mm) {
+  const vfloat at = clamp(thickness_mm / its->slab_step_mm, (vfloat)(0.0f), (vfloat)(SLAB_NODES - 1.001f));
+  vfloat gain;
+#define READ_LANE(lane)                                                                             \
+  {                                                                                                 \
+    const int node = (int)LANE(at, lane);                                                           \
+    const float below = its->slab_gain[node][channel];                                              \
+    LANE(gain, lane) = mix(below, its->slab_gain[node + 1][channel], LANE(at, lane) - (float)node); \
+  }
+  EACH_LANE(READ_LANE)
+#undef READ_LANE
+  return gain;
+}
+
+// Adds light that has walked. A surface that bends away lets light out earlier: a pair of points gains
+// (n' - n) . way / (r^2 + l^2) for each mean free path l. Where both face away from each other they are the faces of a
+// slab instead, whose gain is known.
+static inline void add_walked(Sum* sum, global const struct HiddenMaterial* its, const Target* target,
+                              global const struct HiddenSample* sample, Vectors way, vfloat r_squared, vrgb weight) {
+  const float nx = sample->normal[0], ny = sample->normal[1], nz = sample->normal[2];
+  const vfloat thickness = -(target->normal.x * way.x + target->normal.y * way.y + target->normal.z * way.z);
+  const vfloat along = dot_of(&way, nx, ny, nz) + thickness;
+  const vfloat facing = -dot_of(&target->normal, nx, ny, nz);
+  const vfloat opposite = select_or_zero(AS_MASK(thickness > 0.0f), fmax(facing, (vfloat)(0.0f)));
+#define ADD_CHANNEL(name, channel)                                                            \
+  {                                                                                           \
+    const vfloat light = weight.name * sample->light[channel];                                \
+    const vfloat gain = 1.0f + opposite * (slab_gain(its, channel, thickness) - 1.0f);        \
+    sum->light.name = fma(light, gain, sum->light.name);                                      \
+    const vfloat bend = its->bend_mm[channel] * along / (r_squared + its->mfp2_mm2[channel]); \
+    sum->bent.name = fma(light, (1.0f - opposite) * bend, sum->bent.name);                    \
+  }
+  ADD_CHANNEL(r, 0)
+  ADD_CHANNEL(g, 1)
+  ADD_CHANNEL(b, 2)
+#undef ADD_CHANNEL
+}
+#endif
+
 // Adds the samples from `first` on: those that are near, by 1 - s, or those that are joined, by s, where s goes from 0
 // to 1 between the distances of the material.
-SHARED void add_samples(Sum* sum, const Profile* profile, const struct HiddenMaterial* its, const Target* target,
+SHARED void add_samples(Sum* sum, const Profile* profile, global const struct HiddenMaterial* its, const Target* target,
                         global const struct HiddenSample* samples, int count, int is_joined) {
   const float per_mm = 1.0f / (its->far_mm - its->near_mm);
   for (int i = 0; i < count; ++i) {
@@ -176,10 +220,16 @@ SHARED void add_samples(Sum* sum, const Profile* profile, const struct HiddenMat
     const vrgb density = radial_at(profile, fma((vfloat)(PATCH), (vfloat)(sample->area_mm2), r_squared));
     vfloat area = select_or_zero(counts, share * sample->area_mm2);
 #if PROJECTED
-    if (its->is_projected) area *= projection_factor(target, sample, way, r_squared);
+    if (its->crossing == CROSSING_PROJECTED) area *= projection_factor(target, sample, way, r_squared);
 #endif
     const vrgb weight = times(density, area);
     sum->weight = sum_rgb(sum->weight, weight);
+#if WALK
+    if (its->crossing == CROSSING_WALK) {
+      add_walked(sum, its, target, sample, way, fma((vfloat)(PATCH), (vfloat)(sample->area_mm2), r_squared), weight);
+      continue;
+    }
+#endif
     sum->light.r = fma(weight.r, (vfloat)(sample->light[0]), sum->light.r);
     sum->light.g = fma(weight.g, (vfloat)(sample->light[1]), sum->light.g);
     sum->light.b = fma(weight.b, (vfloat)(sample->light[2]), sum->light.b);
@@ -187,9 +237,12 @@ SHARED void add_samples(Sum* sum, const Profile* profile, const struct HiddenMat
 }
 
 // The part of the whole that the light has which enters where the camera looks, and the sum of all.
-static inline vfloat joined_light(vfloat seen, vfloat seen_weight, vfloat hidden, vfloat hidden_weight) {
+static inline vfloat joined_light(vfloat seen, vfloat seen_weight, vfloat hidden, vfloat hidden_weight, vfloat bent) {
   const vfloat its_share = fmin(seen_weight, (vfloat)(1.0f));
-  return fma(seen, its_share, hidden) / fmin(its_share + hidden_weight, (vfloat)(1.0f));
+  const vfloat all = fma(seen, its_share, hidden);
+  // Curvature is a correction: it neither takes most of the light nor makes much of little.
+  const vfloat corrected = clamp(all + bent, 0.25f * all, 4.0f * all);
+  return corrected / fmin(its_share + hidden_weight, (vfloat)(1.0f));
 }
 
 // A work-item has a region of columns x rows pixels. `seen_weights`: of the visible surface, three planes; `deferred`
@@ -207,8 +260,8 @@ kernel void hidden_light(struct FrameParams f, struct FrameLayouts layouts, glob
   const int x_end = min(x_begin + columns, f.width);
   const int y_end = min(y_begin + rows, f.height);
   for (int m = 0; m < MATERIALS; ++m) {
-    const struct HiddenMaterial its = hidden[m];
-    if (its.cells == 0) continue;
+    global const struct HiddenMaterial* its = hidden + m;
+    if (its->cells == 0) continue;
     Box box = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
     for (int y = y_begin; y < y_end; ++y) {
       const InputRows inputs = input_rows(&f, &in, y);
@@ -221,7 +274,7 @@ kernel void hidden_light(struct FrameParams f, struct FrameLayouts layouts, glob
     }
     if (!(box.low[0] <= box.high[0])) continue;
     Cells cells;
-    list_cells(&cells, &box, &its, all_cells);
+    list_cells(&cells, &box, its, all_cells);
     if (cells.count == 0) continue;
     for (int y = y_begin; y < y_end; ++y) {
       const InputRows inputs = input_rows(&f, &in, y);
@@ -251,21 +304,30 @@ kernel void hidden_light(struct FrameParams f, struct FrameLayouts layouts, glob
         reciprocal.b = 1.0f / safe.b;
 #endif
         const Profile profile = profile_of(profiles + m, nodes, reciprocal);
-        Sum sum = {broadcast_rgb((vfloat)(0.0f)), broadcast_rgb((vfloat)(0.0f))};
+        Sum sum;
+        sum.light = sum.weight = broadcast_rgb((vfloat)(0.0f));
+#if WALK
+        sum.bent = broadcast_rgb((vfloat)(0.0f));
+#endif
         for (int i = 0; i < cells.count; ++i) {
-          global const struct HiddenCell* cell = all_cells + its.first_cell + (cells.is_listed ? cells.list[i] : i);
-          add_samples(&sum, &profile, &its, &target, samples + cell->first_sample, cell->samples, 0);
-          add_samples(&sum, &profile, &its, &target, samples + cell->first_joined, cell->joined, 1);
+          global const struct HiddenCell* cell = all_cells + its->first_cell + (cells.is_listed ? cells.list[i] : i);
+          add_samples(&sum, &profile, its, &target, samples + cell->first_sample, cell->samples, 0);
+          add_samples(&sum, &profile, its, &target, samples + cell->first_joined, cell->joined, 1);
         }
         const vrgb squared = product(reciprocal, reciprocal);
         const vrgb light = product(sum.light, squared);
         const vrgb weight = product(sum.weight, squared);
+#if WALK
+        const vrgb bent = product(sum.bent, squared);
+#else
+        const vrgb bent = broadcast_rgb((vfloat)(0.0f));
+#endif
         const size_t index = plane_index(&f, x, y);
         const vrgb seen = load_rgb(deferred, plane_size(&f), index);
         const vrgb seen_weight = load_rgb(seen_weights, plane_size(&f), index);
-        const vrgb all = {joined_light(seen.r, seen_weight.r, light.r, weight.r),
-                          joined_light(seen.g, seen_weight.g, light.g, weight.g),
-                          joined_light(seen.b, seen_weight.b, light.b, weight.b)};
+        const vrgb all = {joined_light(seen.r, seen_weight.r, light.r, weight.r, bent.r),
+                          joined_light(seen.g, seen_weight.g, light.g, weight.g, bent.g),
+                          joined_light(seen.b, seen_weight.b, light.b, weight.b, bent.b)};
         const vint reached = mine & AS_MASK(weight.r + weight.g + weight.b > 0.0f);
         store_rgb(deferred, plane_size(&f), index, select_rgb(seen, all, reached));
       }

@@ -3,12 +3,13 @@
 
 #include <vector>
 
-#include "profile/smooth_curve.hpp"
+#include "profile/radial_curve.hpp"
 
 namespace dermis {
 
-/// The sum over terms of weight e^(-r/d) / (2 pi d r).
-class ExponentialCurve final : public SmoothCurve {
+/// The sum over terms of weight e^(-r/d) / (2 pi d r). Sums along lines are those of one exponential, term by term: the
+/// logarithm of a sum of many has singularities that are too close for an `EdgeTable`.
+class ExponentialCurve final : public RadialCurve {
  public:
   struct Term {
     double weight;  ///< > 0; all sum to 1
@@ -20,9 +21,11 @@ class ExponentialCurve final : public SmoothCurve {
   double radial(double r) const override;
   double disc(double r) const override;
   double disc_tail(double r) const override;
+  double marginal(double x) const override;
+  double edge_tail(double x) const override;
   double spectrum(double omega) const override;
   double scale() const override { return scale_; }
-  double reach() const override { return 740 * widest_; }
+  double reach() const override;
 
  private:
   std::vector<double> numbers() const override;

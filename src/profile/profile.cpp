@@ -105,6 +105,18 @@ void require_rows(const std::vector<TableRow>& rows) {
 /// Christensen and Burley 2015, eq. 6.
 double shape_factor(double albedo) { return 1.9 - albedo + 3.5 * (albedo - 0.8) * (albedo - 0.8); }
 
+/// The mean free path of a Cycles radius, of Burley's profile.
+Rgb burley_path(const Rgb& radius_mm) {
+  return {radius_mm[0] / (4 * pi), radius_mm[1] / (4 * pi), radius_mm[2] / (4 * pi)};
+}
+
+/// The mean free path of a medium.
+Rgb medium_path(const Rgb& reduced_scattering_per_mm, const Rgb& absorption_per_mm) {
+  Rgb mfp_mm{};
+  for (std::size_t c = 0; c < 3; ++c) mfp_mm[c] = 1 / (reduced_scattering_per_mm[c] + absorption_per_mm[c]);
+  return mfp_mm;
+}
+
 using Curves = std::array<std::shared_ptr<const RadialCurve>, 3>;
 
 /// make(c) for each channel.
@@ -113,9 +125,18 @@ Curves for_each_channel(const Make& make) {
   return {make(0), make(1), make(2)};
 }
 
+Curves burley_curves(const Rgb& mfp_mm, const Rgb& albedo) {
+  return for_each_channel([&](int c) { return std::make_shared<BurleyCurve>(mfp_mm[c] / shape_factor(albedo[c])); });
+}
+
+Curves walk_curves(const Rgb& mfp_mm, const Rgb& albedo) {
+  return for_each_channel([&](int c) { return std::make_shared<ExponentialCurve>(walk_terms(mfp_mm[c], albedo[c])); });
+}
+
 }  // namespace
 
-Profile::Profile(std::array<std::shared_ptr<const RadialCurve>, 3> curves) : curves_(std::move(curves)) {}
+Profile::Profile(std::array<std::shared_ptr<const RadialCurve>, 3> curves, std::optional<Rgb> mfp_mm)
+    : curves_(std::move(curves)), mfp_mm_(mfp_mm) {}
 
 Profile Profile::burley(const Rgb& d_mm) {
   require_lengths(d_mm, "d_mm");
@@ -125,20 +146,20 @@ Profile Profile::burley(const Rgb& d_mm) {
 Profile Profile::burley_mfp(const Rgb& mfp_mm, const Rgb& albedo) {
   require_lengths(mfp_mm, "mfp_mm");
   require_shares(albedo, "albedo");
-  return Profile(
-      for_each_channel([&](int c) { return std::make_shared<BurleyCurve>(mfp_mm[c] / shape_factor(albedo[c])); }));
+  return Profile(burley_curves(mfp_mm, albedo), mfp_mm);
 }
 
 Profile Profile::burley_cycles(const Rgb& radius_mm, const Rgb& albedo) {
   require_lengths(radius_mm, "radius_mm");
   require_shares(albedo, "albedo");
-  return Profile(for_each_channel(
-      [&](int c) { return std::make_shared<BurleyCurve>(radius_mm[c] / (4 * pi) / shape_factor(albedo[c])); }));
+  const Rgb mfp_mm = burley_path(radius_mm);
+  return Profile(burley_curves(mfp_mm, albedo), mfp_mm);
 }
 
 Profile Profile::burley_cycles(const Rgb& radius_mm) {
   require_lengths(radius_mm, "radius_mm");
-  Profile profile(for_each_channel([&](int c) { return std::make_shared<BurleyCurve>(radius_mm[c] / (4 * pi)); }));
+  const Rgb mfp_mm = burley_path(radius_mm);
+  Profile profile(for_each_channel([&](int c) { return std::make_shared<BurleyCurve>(mfp_mm[c]); }), mfp_mm);
   profile.width_follows_albedo_ = true;
   return profile;
 }
@@ -146,16 +167,22 @@ Profile Profile::burley_cycles(const Rgb& radius_mm) {
 Profile Profile::random_walk_cycles(const Rgb& radius_mm, const Rgb& albedo) {
   require_lengths(radius_mm, "radius_mm");
   require_shares(albedo, "albedo");
-  return Profile(for_each_channel([&](int c) {
-    return std::make_shared<ExponentialCurve>(walk_terms(walk_mfp(radius_mm[c], albedo[c]), albedo[c]));
-  }));
+  Rgb mfp_mm{};
+  for (std::size_t c = 0; c < 3; ++c) mfp_mm[c] = walk_mfp(radius_mm[c], albedo[c]);
+  return walk_of(mfp_mm, albedo);
 }
 
 Profile Profile::random_walk_mfp(const Rgb& mfp_mm, const Rgb& albedo) {
   require_lengths(mfp_mm, "mfp_mm");
   require_shares(albedo, "albedo");
-  return Profile(
-      for_each_channel([&](int c) { return std::make_shared<ExponentialCurve>(walk_terms(mfp_mm[c], albedo[c])); }));
+  return walk_of(mfp_mm, albedo);
+}
+
+Profile Profile::walk_of(const Rgb& mfp_mm, const Rgb& albedo) {
+  Profile profile(walk_curves(mfp_mm, albedo), mfp_mm);
+  profile.scattering_albedo_.emplace();
+  for (std::size_t c = 0; c < 3; ++c) (*profile.scattering_albedo_)[c] = single_scattering_albedo(albedo[c]);
+  return profile;
 }
 
 Profile Profile::projected() const {
@@ -207,17 +234,19 @@ Profile Profile::artist(const Rgb& near_mm, const Rgb& far_mm, double near_weigh
 Profile Profile::dipole(const Rgb& reduced_scattering_per_mm, const Rgb& absorption_per_mm, double eta) {
   require_medium(reduced_scattering_per_mm, absorption_per_mm, eta);
   return Profile(for_each_channel([&](int c) {
-    return std::make_shared<DipoleCurve>(
-        DipoleCurve::classical({reduced_scattering_per_mm[c], absorption_per_mm[c], eta}));
-  }));
+                   return std::make_shared<DipoleCurve>(
+                       DipoleCurve::classical({reduced_scattering_per_mm[c], absorption_per_mm[c], eta}));
+                 }),
+                 medium_path(reduced_scattering_per_mm, absorption_per_mm));
 }
 
 Profile Profile::better_dipole(const Rgb& reduced_scattering_per_mm, const Rgb& absorption_per_mm, double eta) {
   require_medium(reduced_scattering_per_mm, absorption_per_mm, eta);
   return Profile(for_each_channel([&](int c) {
-    return std::make_shared<DipoleCurve>(
-        DipoleCurve::better({reduced_scattering_per_mm[c], absorption_per_mm[c], eta}));
-  }));
+                   return std::make_shared<DipoleCurve>(
+                       DipoleCurve::better({reduced_scattering_per_mm[c], absorption_per_mm[c], eta}));
+                 }),
+                 medium_path(reduced_scattering_per_mm, absorption_per_mm));
 }
 
 Profile Profile::tabulated(const std::vector<TableRow>& rows) {
@@ -234,6 +263,7 @@ Profile Profile::tabulated(const std::vector<TableRow>& rows) {
 bool Profile::operator==(const Profile& other) const {
   const auto same = [](const auto& a, const auto& b) { return a == b || *a == *b; };
   return width_follows_albedo_ == other.width_follows_albedo_ && is_projected_ == other.is_projected_ &&
+         mfp_mm_ == other.mfp_mm_ && scattering_albedo_ == other.scattering_albedo_ &&
          std::equal(curves_.begin(), curves_.end(), other.curves_.begin(), same);
 }
 
@@ -289,6 +319,16 @@ double Profile::radius(int channel, double share) const {
 double Profile::half_width(int channel, double share) const {
   require_share(share);
   return curve(channel).half_width(share);
+}
+
+std::optional<double> Profile::mfp_mm(int channel) const {
+  if (!mfp_mm_) return std::nullopt;
+  return (*mfp_mm_)[static_cast<std::size_t>(channel)];
+}
+
+std::optional<double> Profile::scattering_albedo(int channel) const {
+  if (!scattering_albedo_) return std::nullopt;
+  return (*scattering_albedo_)[static_cast<std::size_t>(channel)];
 }
 
 int Profile::widest_channel() const {

@@ -9,7 +9,7 @@
 
 namespace dermis {
 
-/// Equal for equal profiles, and for these only.
+/// Equal for profiles of equal curves and widths, and for these only.
 struct ProfileContent {
   std::array<std::string, 3> kinds;  ///< of the curve of each channel: a name that holds for one build of the library
   std::array<std::vector<double>, 3> numbers;  ///< that the curve is made of

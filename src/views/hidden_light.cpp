@@ -8,14 +8,12 @@
 
 #include "opencl/program.hpp"
 #include "screen/methods/profile_tables.hpp"
+#include "views/crossing.hpp"
 #include "views/hidden_samples.hpp"
 
 namespace dermis {
 
 namespace {
-
-/// Light from farther away does not count.
-constexpr double share_within_reach = 0.998;
 
 /// Of the pixels of a view, so many may lie in front of what the camera sees: edges, and what the frame's depth leaves
 /// out.
@@ -131,29 +129,30 @@ struct HiddenLight::State {
   cl::Program pixels;                    ///< views/view_pixels.cl
   cl::Program gather;                    ///< views/hidden_light.cl
   ProfileTables profiles;
-  std::vector<HiddenProfile> hidden;  ///< of each material
+  std::vector<params::HiddenMaterial> hidden;  ///< of each material, without samples
 };
 
 HiddenLight::HiddenLight(const PlanSettings& settings) : state_(std::make_unique<State>()) {
   if (!settings.frames.depth) {
     throw Error(ErrorCode::role_missing, "depth", "no image", "a depth image, for frames with views");
   }
-  const bool any_projected = std::any_of(settings.materials.begin(), settings.materials.end(),
-                                         [](const Material& its) { return its.profile.is_projected(); });
+  bool has_projected = false;
+  bool has_walk = false;
+  for (const Material& its : settings.materials) {
+    state_->hidden.push_back(crossing_of(its.profile));
+    has_projected = has_projected || state_->hidden.back().crossing == CROSSING_PROJECTED;
+    has_walk = has_walk || state_->hidden.back().crossing == CROSSING_WALK;
+  }
   const std::string options = common_options(settings) +
                               build_constant("LIT", settings.options.lighting == Lighting::lit ? 1 : 0) +
                               profile_table_constant();
-  const std::string by_lanes = options + build_constant("PROJECTED", any_projected ? 1 : 0) +
+  const std::string by_lanes = options + build_constant("PROJECTED", has_projected ? 1 : 0) +
+                               build_constant("WALK", has_walk ? 1 : 0) +
                                build_constant("V", settings.item_is_pixel() ? 1 : BLOCK);
   state_->weights = build_plan(weights_of(settings));
   state_->pixels = build_program(settings.device, {"views/view_pixels.cl"}, options + build_constant("V", 1));
   state_->gather = build_program(settings.device, {"views/hidden_light.cl"}, by_lanes);
   state_->profiles = upload_profiles(cl::Context(settings.device.context(), true), settings.materials);
-  for (const Material& its : settings.materials) {
-    double reach_mm = 0;
-    for (int c = 0; c < 3; ++c) reach_mm = std::max(reach_mm, its.profile.radius(c, share_within_reach));
-    state_->hidden.push_back({reach_mm, its.profile.is_projected()});
-  }
 }
 
 HiddenLight::~HiddenLight() = default;

@@ -224,14 +224,11 @@ std::vector<Sample> joined(std::span<const Sample> samples, double side_mm) {
 }
 
 /// Appends the cells of one material.
-void append_cells(std::vector<Sample>& samples, const HiddenProfile& profile, HiddenSamples& to) {
-  const double reach_mm = profile.reach_mm;
-  params::HiddenMaterial material{};
+void append_cells(std::vector<Sample>& samples, params::HiddenMaterial material, HiddenSamples& to) {
+  const double reach_mm = static_cast<double>(material.reach_mm);
   material.first_cell = static_cast<int>(to.cells.size());
-  material.reach_mm = static_cast<float>(reach_mm);
   material.near_mm = static_cast<float>(near_reach * reach_mm);
   material.far_mm = static_cast<float>(far_reach * reach_mm);
-  material.is_projected = profile.is_projected ? 1 : 0;
   const double side_mm = cell_side * reach_mm;
   std::stable_sort(samples.begin(), samples.end(),
                    [&](const Sample& a, const Sample& b) { return cube_of(a.at, side_mm) < cube_of(b.at, side_mm); });
@@ -262,7 +259,7 @@ void append_cells(std::vector<Sample>& samples, const HiddenProfile& profile, Hi
 
 }  // namespace
 
-HiddenSamples hidden_samples(std::span<const ViewPixels> views, std::span<const HiddenProfile> profiles) {
+HiddenSamples hidden_samples(std::span<const ViewPixels> views, std::span<const params::HiddenMaterial> profiles) {
   std::vector<std::vector<Patch>> patches;
   for (const ViewPixels& view : views) patches.push_back(patches_of(view));
   std::vector<PatchGrid> grids;
@@ -277,7 +274,7 @@ HiddenSamples hidden_samples(std::span<const ViewPixels> views, std::span<const 
       for (std::size_t other = 0; other < grids.size(); ++other) {
         if (other != v) density += grids[other].density_at(patch);
       }
-      split(patch, 1 / density, profiles[patch.material].reach_mm, by_material[patch.material]);
+      split(patch, 1 / density, static_cast<double>(profiles[patch.material].reach_mm), by_material[patch.material]);
     }
   }
   HiddenSamples result;

@@ -8,12 +8,6 @@
 
 namespace dermis {
 
-/// How light spreads under a material.
-struct HiddenProfile {
-  double reach_mm;  ///< light from beyond does not count
-  bool is_projected;
-};
-
 /// The pixels of a view, row by row.
 struct ViewPixels {
   int width = 0;
@@ -29,7 +23,7 @@ struct HiddenSamples {
 
 /// Makes a sample of each hidden pixel, of which the light stands for an area: one over the sum of the samples per area
 /// of all views that show the place, so that what several views see counts once. A pixel that is large beside the reach
-/// of its material is split along the surface.
-HiddenSamples hidden_samples(std::span<const ViewPixels> views, std::span<const HiddenProfile> profiles);
+/// of its material is split along the surface. `profiles` have all but cells and distances.
+HiddenSamples hidden_samples(std::span<const ViewPixels> views, std::span<const params::HiddenMaterial> profiles);
 
 }  // namespace dermis

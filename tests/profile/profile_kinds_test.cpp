@@ -51,6 +51,22 @@ TEST_CASE("Burley's width by mean free path, by Cycles radius and by albedo", "[
   CHECK(by_path.radial(2, 1.0) == Approx(Profile::burley({1, 1, 1 / 1.04}).radial(2, 1.0)));  // s(1) = 1.04
 }
 
+TEST_CASE("profiles of a medium know its mean free path", "[profile]") {
+  const Rgb ones = {1, 1, 1};
+  CHECK(Profile::burley_mfp({3, 2, 1}, {0.5, 0.1, 1}).mfp_mm(1) == 2);
+  CHECK(*Profile::burley_cycles({3, 2, 1}, ones).mfp_mm(2) == Approx(1 / (4 * pi)));
+  CHECK(*Profile::burley_cycles({3, 2, 1}).mfp_mm(0) == Approx(3 / (4 * pi)));
+  CHECK(*Profile::dipole({1, 2, 3}, {.5, 2, 1}).mfp_mm(1) == Approx(.25));
+  CHECK(*Profile::better_dipole({1, 2, 3}, {.5, 2, 1}).mfp_mm(2) == Approx(.25));
+  CHECK(Profile::random_walk_mfp({3, 2, 1}, {0.5, 0.1, 1}).mfp_mm(0) == 3);
+  // The albedo of a scattering is 0 there.
+  CHECK(*Profile::random_walk_cycles({3, 2, 1}, {0, 0.1, 1}).mfp_mm(0) == Approx(3 * std::sqrt(3.0)));
+  CHECK_FALSE(Profile::burley(ones).mfp_mm(0));
+  CHECK_FALSE(Profile::artist(ones, ones, 0.5).mfp_mm(0));
+  // The same light, and not all of the same values.
+  CHECK_FALSE(Profile::burley_mfp({1.04, 1.04, 1.04}, ones) == Profile::burley(ones));
+}
+
 TEST_CASE("Burley's profile and its spectrum", "[profile]") {
   const double d = 0.7;
   const Profile profile = Profile::burley({d, d, d});

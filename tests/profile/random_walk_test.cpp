@@ -154,7 +154,9 @@ TEST_CASE("the radius of a random walk means what it means in Cycles", "[profile
     const double radius_mm = random.uniform(0.1, 20);
     const double path_mm = radius_mm * cycles_path(albedo);
     CAPTURE(test_seed(), albedo, radius_mm);
-    CHECK(Profile::random_walk_cycles({radius_mm, 1, 1}, {albedo, 0, 1}).radial(0, radius_mm) ==
+    const Profile by_radius = Profile::random_walk_cycles({radius_mm, 1, 1}, {albedo, 0, 1});
+    CHECK(*by_radius.mfp_mm(0) == Approx(path_mm).epsilon(1e-12));
+    CHECK(by_radius.radial(0, radius_mm) ==
           Approx(Profile::random_walk_mfp({path_mm, 1, 1}, {albedo, 0, 1}).radial(0, radius_mm)).epsilon(1e-11));
   }
   // Beyond these Cycles has constants.
