@@ -47,14 +47,15 @@ double single_scattering_albedo(double albedo) {
 std::vector<ExponentialCurve::Term> walk_terms(double mfp_mm, double albedo) {
   const double absorbed = 1 - single_scattering_albedo(albedo);
   // A mixture of profiles is a profile. Rows are so close that it is the one between.
-  const auto less = std::find_if(walk_table.begin() + 1, walk_table.end() - 1,
-                                 [&](const WalkRow& row) { return row.absorbed <= absorbed; });
-  const auto more = less - 1;
-  const double t = std::clamp((more->absorbed - absorbed) / (more->absorbed - less->absorbed), 0.0, 1.0);
+  std::size_t row = 1;
+  while (row + 1 < walk_table.size() && walk_table[row].absorbed > absorbed) ++row;
+  const WalkRow& more = walk_table[row - 1];
+  const WalkRow& less = walk_table[row];
+  const double t = std::clamp((more.absorbed - absorbed) / (more.absorbed - less.absorbed), 0.0, 1.0);
   std::vector<ExponentialCurve::Term> terms;
   double all = 0;
   for (std::size_t i = 0; i < walk_lengths.size(); ++i) {
-    const double weight = (1 - t) * more->weight[i] + t * less->weight[i];
+    const double weight = (1 - t) * more.weight[i] + t * less.weight[i];
     if (weight > 0) terms.push_back({weight, walk_lengths[i] * mfp_mm});
     all += weight;
   }
