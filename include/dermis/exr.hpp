@@ -368,7 +368,8 @@ struct FoundCamera {
 FoundCamera find_camera(const Picture& picture, const Roles& roles, const CameraHint& hint = {});
 
 /// The depth of each pixel along the view axis: that of the picture, or that of its positions if the camera has an
-/// axis; infinite where there is nothing. Empty if there is neither.
+/// axis; infinite where there is nothing. Terraces that halves make of a depth are smoothed, within what they round.
+/// Empty if there is neither.
 std::vector<float> load_depth(const Picture& picture, const Roles& roles, const FoundCamera& camera);
 
 }  // namespace dermis::exr
