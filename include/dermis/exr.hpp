@@ -46,8 +46,9 @@ class Picture {
 
   /// Adds the channels of another file, which are read and never written, under the names "PATH:CHANNEL"; where its
   /// data window does not reach they are zero. Does nothing if that was done before. Throws as read, and
-  /// Error(input_unsupported) if its display window is another one. Invalidates views.
-  void join(const std::filesystem::path& path);
+  /// Error(input_unsupported) if its display window is another one. Invalidates views. Returns in a line what says that
+  /// the file is of another frame, if an attribute does: Blender's "Frame", or "imageCounter" of SMPTE ST 2065-4.
+  std::string join(const std::filesystem::path& path);
 
   /// A picture without channels, black outside `data`.
   Picture(Window data, Window display);
@@ -179,11 +180,19 @@ struct Renderer {
     std::vector<std::string> names;
   };
 
+  /// Light that the beauty has beside the diffuse and the specular one: a sum of passes, each by its names.
+  struct OtherLight {
+    std::vector<std::vector<std::string>> passes;
+    std::vector<std::string> colour = {};  ///< names of what the renderer has divided it by; none if it has not
+  };
+
   std::string name;
   Lighting lighting;  ///< whether the albedo is in the light
   std::vector<Pass> passes;
   /// If there are any, only pictures are of this renderer that have one of these channels.
   std::vector<std::string> marks = {};
+  std::vector<std::string> specular_colour = {};  ///< as OtherLight::colour
+  std::vector<OtherLight> others = {};            ///< none if its passes do not add up to the beauty
 };
 
 /// The renderers that dermis knows by name.
@@ -206,6 +215,12 @@ struct RoleRequest {
   const Renderer* renderer = nullptr;  ///< nullptr: the one most of whose passes are there
 };
 
+/// A part of the beauty beside the diffuse light.
+struct OtherLight {
+  ChannelSum light;
+  std::vector<std::string> colour = {};  ///< the channels of what it is multiplied by; none if it is all of the light
+};
+
 /// Which channels of a picture play which role.
 struct Roles {
   std::string layer = {};             ///< the view layer, without the dot; may be empty
@@ -216,6 +231,14 @@ struct Roles {
   std::array<std::string, role_table.size()> rules =
       {};                                       ///< what gave the role: a renderer, "any renderer" or "--role"
   std::vector<std::string> missing_light = {};  ///< passes of the renderer's light that are not there
+
+  /// By which names each role was sought, for messages; empty if there is no renderer to know them from.
+  std::array<std::string, role_table.size()> sought = {};
+  std::vector<OtherLight> others = {};           ///< what makes up the beauty beside the light
+  std::vector<std::string> missing_others = {};  ///< passes of it that the renderer has and the picture has not
+
+  /// What contradicts them, each in one line; find_roles leaves it empty.
+  std::vector<std::string> warnings = {};
 
   const ChannelSum& operator[](Role role) const { return channels[static_cast<std::size_t>(role)]; }
   ChannelSum& operator[](Role role) { return channels[static_cast<std::size_t>(role)]; }
@@ -233,6 +256,9 @@ std::vector<std::string> files_of(std::span<const std::string> overrides);
 
 /// The summed values of a role, packed, as float; empty if the picture does not have it.
 std::vector<float> load(const Picture& picture, const Roles& roles, Role role);
+
+/// The same of any groups of three or one.
+std::vector<float> load(const Picture& picture, const ChannelSum& sum);
 
 /// Throws Error(role_missing) that names the role and lists the channels there are, if the picture does not have it.
 void require(const Picture& picture, const Roles& roles, Role role);
@@ -344,7 +370,8 @@ struct FoundCamera {
 FoundCamera find_camera(const Picture& picture, const Roles& roles, const CameraHint& hint = {});
 
 /// The depth of each pixel along the view axis: that of the picture, or that of its positions if the camera has an
-/// axis; infinite where there is nothing. Empty if there is neither.
+/// axis; infinite where there is nothing. Terraces that halves make of a depth are smoothed, within what they round.
+/// Empty if there is neither.
 std::vector<float> load_depth(const Picture& picture, const Roles& roles, const FoundCamera& camera);
 
 }  // namespace dermis::exr

@@ -10,6 +10,7 @@
 #include "dermis/exr.hpp"
 #include "exr/camera_attributes.hpp"
 #include "exr/depth_type.hpp"
+#include "exr/half_depth.hpp"
 #include "exr/median.hpp"
 #include "exr/message_text.hpp"
 #include "exr/position_camera.hpp"
@@ -111,6 +112,10 @@ double stretch_of(const Picture& picture, const Roles& roles, const FoundCamera&
   return ratios.empty() ? 1 : median(std::move(ratios));
 }
 
+bool is_half(const Picture& picture, const ChannelSum& sum) {
+  return sum.size() == 1 && picture.find(sum[0][0])->format == Format::f16;
+}
+
 /// The depth of a camera that does not come from positions.
 void add_depth(const Picture& picture, const Roles& roles, const CameraHint& hint,
                const std::optional<CameraMatrices>& matrices, const std::string& why_not, FoundCamera& found) {
@@ -165,6 +170,7 @@ FoundCamera find_camera(const Picture& picture, const Roles& roles, const Camera
 std::vector<float> load_depth(const Picture& picture, const Roles& roles, const FoundCamera& camera) {
   if (!camera.axis) {
     std::vector<float> depth = load(picture, roles, Role::depth);
+    if (is_half(picture, roles[Role::depth])) smooth_half_depth(depth, picture.width());
     convert(depth, picture.width(), camera.camera, camera.depth_type);
     return depth;
   }

@@ -21,13 +21,18 @@ struct LensAttributes {
   std::string_view fov_deg;   ///< horizontal; or empty, and
   std::string_view focal_mm;  ///< the focal length with
   std::string_view aperture;  ///< the width of the sensor
+  /// If one of these is above 0, the field of view is that of all that was rendered, around the display window, too.
+  std::array<std::string_view, 2> overscan = {};
 };
 
 constexpr std::array lens_table = {
     LensAttributes{"cameraFov", {}, {}},      // V-Ray: its focal length and aperture may belong to another picture
     LensAttributes{"rs/camera/fov", {}, {}},  // Redshift
     LensAttributes{"RSCameraFOV", {}, {}},    // Redshift, older
-    LensAttributes{"unreal/camera/*/fov", {}, {}},
+    LensAttributes{"unreal/camera/*/fov",
+                   {},
+                   {},
+                   {"unreal/camera/overscanPercentage", "unreal/camera/*/overscanPercent"}},  // shares, not percents
     LensAttributes{{}, "unreal/camera/*/focalLength", "unreal/camera/*/sensorWidth"},
     LensAttributes{{}, "CameraFocalLength", "CameraFilmApertureHorizontal"},  // Arnold from Maya
     LensAttributes{{}, "Lens", {}},                                           // Blender
@@ -75,9 +80,24 @@ std::optional<FoundCamera> lens_of(const Picture& picture, double fov_deg, std::
   return FoundCamera{.camera = centred_camera(picture, focal_px_of(picture, fov_deg)), .source = std::move(source)};
 }
 
+std::optional<Value> find_overscan(const Picture& picture, const LensAttributes& row) {
+  for (const std::string_view pattern : row.overscan)
+    if (auto overscan = find_value(picture, pattern); overscan && overscan->number > 0) return overscan;
+  return std::nullopt;
+}
+
 std::optional<FoundCamera> lens_of(const Picture& picture, const LensAttributes& row,
                                    std::vector<std::string>& warnings) {
-  if (const auto fov = find_value(picture, row.fov_deg)) return lens_of(picture, fov->number, said(*fov), warnings);
+  if (const auto fov = find_value(picture, row.fov_deg)) {
+    auto found = lens_of(picture, fov->number, said(*fov), warnings);
+    const auto overscan = find_overscan(picture, row);
+    if (!found || !overscan) return found;
+    found->source += " with " + said(*overscan);
+    const double wider = static_cast<double>(picture.data_window().width) / picture.display_window().width;
+    found->camera.scale_x *= wider;
+    found->camera.scale_y *= wider;
+    return found;
+  }
   const auto focal = find_value(picture, row.focal_mm);
   if (!focal) return std::nullopt;
   const auto aperture = find_value(picture, row.aperture);

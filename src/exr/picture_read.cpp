@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <exception>
 #include <memory>
@@ -123,6 +124,26 @@ Header merged(const std::vector<Header>& headers) {
   return all;
 }
 
+/// The attributes in which files say which frame they are of.
+constexpr std::array frame_attributes = {"Frame", "imageCounter"};
+
+std::string text_of_attribute(const Picture& picture, const char* name) {
+  if (const auto text = picture.text_attribute(name)) return *text;
+  const std::vector<double> numbers = picture.number_attribute(name);
+  return numbers.empty() ? std::string() : short_text(numbers.front());
+}
+
+std::string other_frame(const Picture& picture, const Picture& other, const std::filesystem::path& path) {
+  for (const char* name : frame_attributes) {
+    const std::string here = text_of_attribute(picture, name);
+    const std::string there = text_of_attribute(other, name);
+    if (!here.empty() && !there.empty() && here != there)
+      return escaped(path.string()) + " is of another frame: its " + name + " is " + escaped(there) +
+             ", that of the picture " + escaped(here);
+  }
+  return {};
+}
+
 [[noreturn]] void unreadable(const std::filesystem::path& path, std::string_view why) {
   throw Error(ErrorCode::input_unsupported, escaped(path.string()), escaped(why), "a complete OpenEXR file");
 }
@@ -156,11 +177,11 @@ Picture Picture::read(const std::filesystem::path& path, std::size_t room) {
   }
 }
 
-void Picture::join(const std::filesystem::path& path) {
+std::string Picture::join(const std::filesystem::path& path) {
   const std::string prefix = path.string() + ':';
   const bool is_there = std::any_of(channels().begin(), channels().end(),
                                     [&](const Channel& channel) { return channel.name.starts_with(prefix); });
-  if (is_there) return;
+  if (is_there) return {};
   const Picture other = read(path);
   if (other.display_window() != display_window()) {
     throw Error(ErrorCode::input_unsupported, escaped(path.string()),
@@ -183,8 +204,9 @@ void Picture::join(const std::filesystem::path& path) {
 
   const Packing from(other.channels());
   const Packing to(channels().subspan(first));
+  std::string difference = other_frame(*this, other, path);
   const Window shared = overlap(data_window(), other.data_window());
-  if (shared.width <= 0 || shared.height <= 0) return;
+  if (shared.width <= 0 || shared.height <= 0) return difference;
   std::vector<std::byte> row(from.pixel_bytes() * static_cast<std::size_t>(shared.width));
   Area theirs = other.state_->area_of(shared);
   Area ours = state_->area_of(shared);
@@ -193,6 +215,7 @@ void Picture::join(const std::filesystem::path& path) {
     other.state_->pixels.pack(from, row.data(), theirs);
     state_->pixels.unpack(to, row.data(), ours);
   }
+  return difference;
 }
 
 }  // namespace dermis::exr

@@ -7,6 +7,7 @@
 
 #include "exr/depth_line.hpp"
 #include "exr/depth_type.hpp"
+#include "exr/frame_match.hpp"
 #include "exr/median.hpp"
 #include "exr/message_text.hpp"
 #include "exr/projection_fit.hpp"
@@ -364,10 +365,20 @@ class Finding {
     }
     const bool is_terraced = !coarseness(picture_, roles_[Role::depth]).empty() && coarse_position_.empty();
     if (is_terraced && fit_->share >= 0.9) out.axis = axis();
+    if (type_) check_frames(name, out);
     if (out.axis) return;
     if (told_ && *told_ != out.depth_type)
       out.warnings.push_back("--depth-type " + text_of(*told_) + ": the positions say that " + name + " is " +
                              text_of(out.depth_type) + ", which is used");
+  }
+
+  void check_frames(const std::string& name, FoundCamera& out) const {
+    const FrameMatch match = match_frames(picture_, roles_, out, axis(), *fit_, points_);
+    if (match.is_one_frame()) return;
+    out.axis = axis();
+    out.warnings.push_back(name + " contradicts the positions all around " + std::to_string(match.contradicted) +
+                           " of " + std::to_string(match.seen) +
+                           " pixels, as that of another frame does: depth comes from the positions");
   }
 
   /// Depths of parallel rays are those along the axis and a constant. In which of two directions the axis leads, depths
@@ -400,8 +411,10 @@ class Finding {
     constexpr double small = 0.01;
     if (line.factor != 0 && line.off <= small) {
       const double typical = median(expected);
-      if (std::abs(line.offset) <= small * std::abs(line.factor) * typical)
-        return name + " is " + short_text(line.factor) + " times the depth of the positions" + end;
+      const bool is_scaled = std::abs(line.offset) <= small * std::abs(line.factor) * typical;
+      if (is_scaled && std::abs(line.factor - 1) <= small)
+        return name + " is " + short_text(100 * line.off) + " % off that of the positions" + end;
+      if (is_scaled) return name + " is " + short_text(line.factor) + " times the depth of the positions" + end;
       return name + " is normalised, 0 at " + short_text(-line.offset / line.factor) + " and 1 at " +
              short_text((1 - line.offset) / line.factor) + " scene units" + end;
     }

@@ -39,6 +39,56 @@ std::vector<std::string> missing_light(const Catalogue& catalogue, std::string_v
   return missing;
 }
 
+/// Passes of light, where the layer has any of them, or else outside all layers. `missing` are their names if none is
+/// there, or those that are not.
+ChannelSum find_light(const Catalogue& catalogue, std::string_view layer,
+                      const std::vector<std::vector<std::string>>& passes, std::vector<std::string>& missing) {
+  ChannelSum sum;
+  std::vector<std::string> lacking;
+  for (const std::string_view place : {layer, std::string_view()}) {
+    lacking.clear();
+    for (const std::vector<std::string>& names : passes) {
+      std::vector<std::string> group = find_pass(catalogue, place, {Role::beauty, names});
+      if (group.empty()) {
+        lacking.push_back(names.front());
+      } else {
+        sum.push_back(std::move(group));
+      }
+    }
+    if (!sum.empty()) break;
+  }
+  missing.insert(missing.end(), lacking.begin(), lacking.end());
+  return sum;
+}
+
+/// What a renderer says of the beauty beside the diffuse light. A specular role that the caller gives is all of it.
+void find_others(const Catalogue& catalogue, const Renderer& renderer, bool is_specular_told, Roles& roles) {
+  const auto add = [&](ChannelSum light, const std::vector<std::string>& colour_names) {
+    if (light.empty()) return;
+    std::vector<std::string> unused;
+    ChannelSum colour;
+    if (!colour_names.empty()) colour = find_light(catalogue, roles.layer, {colour_names}, unused);
+    roles.others.push_back({std::move(light), colour.empty() ? std::vector<std::string>() : colour.front()});
+  };
+  add(roles[Role::specular], is_specular_told ? std::vector<std::string>() : renderer.specular_colour);
+  for (const Renderer::OtherLight& other : renderer.others)
+    add(find_light(catalogue, roles.layer, other.passes, roles.missing_others), other.colour);
+  if (roles.has(Role::specular)) return;
+  for (const Renderer::Pass& pass : renderer.passes)
+    if (pass.role == Role::specular) roles.missing_others.push_back(pass.names.front());
+}
+
+/// "diffuse_direct or diffuse_indirect (arnold)"; empty if the renderer has no pass for the role.
+std::string names_sought(const Renderer& renderer, Role role) {
+  std::string names;
+  for (const Renderer::Pass& pass : renderer.passes) {
+    if (pass.role != role) continue;
+    const std::string& name = pass.names.front();
+    names += (names.empty() ? "" : " or ") + (name.empty() ? "R, G, B" : name);
+  }
+  return names.empty() ? names : names + " (" + renderer.name + ")";
+}
+
 /// The passes of a role in a layer. What a layer lacks may stand outside all layers.
 ChannelSum find_role(const Catalogue& catalogue, std::string_view layer, const Renderer& renderer, Role role) {
   for (const std::string_view place : {layer, std::string_view()}) {
@@ -200,13 +250,23 @@ Roles find_roles(const Picture& picture, const RoleRequest& request) {
     roles.lighting = renderer.lighting;
     roles.missing_light = missing_light(catalogue, roles.layer, renderer);
   }
+  if (likeliest != nullptr) {
+    for (const RoleInfo& info : role_table) {
+      std::string& sought = roles.sought[static_cast<std::size_t>(info.role)];
+      sought = names_sought(renderer, info.role);
+      if (sought.empty()) sought = names_sought(any_renderer, info.role);
+    }
+  }
+  bool is_specular_told = false;
   for (const Override& change : parsed) {
+    is_specular_told = is_specular_told || change.role() == Role::specular;
     roles[change.role()] = change.resolve(catalogue);
     roles.rules[static_cast<std::size_t>(change.role())] = "--role";
     if (change.role() != Role::light) continue;
     roles.renderer.clear();
     roles.missing_light.clear();
   }
+  find_others(catalogue, renderer, is_specular_told, roles);
   return roles;
 }
 
@@ -220,13 +280,9 @@ std::vector<std::string> files_of(std::span<const std::string> overrides) {
   return files;
 }
 
-std::vector<float> load(const Picture& picture, const Roles& roles, Role role) {
+std::vector<float> load(const Picture& picture, const ChannelSum& sum) {
   std::vector<float> out;
-  for (const std::vector<std::string>& group : roles[role]) {
-    if (group.size() != info_of(role).values) {
-      throw Error(ErrorCode::usage, name_of(role), std::to_string(group.size()) + " channels",
-                  std::to_string(info_of(role).values));
-    }
+  for (const std::vector<std::string>& group : sum) {
     const bool first = out.empty();
     for (std::size_t c = 0; c < group.size(); ++c) {
       const std::vector<float> plane = picture.plane(group[c]);
@@ -240,13 +296,27 @@ std::vector<float> load(const Picture& picture, const Roles& roles, Role role) {
   return out;
 }
 
-void require(const Picture& picture, const Roles& roles, Role role) {
-  if (!roles.has(role)) {
-    const std::string name(name_of(role));
-    throw Error(ErrorCode::role_missing, name, "no such channel among " + channel_list(picture),
-                "a pass for it by the names of " + (roles.renderer.empty() ? renderer_names() : roles.renderer) +
-                    ", or --role " + name + "=CHANNELS (FILE:CHANNELS if another file has it)");
+std::vector<float> load(const Picture& picture, const Roles& roles, Role role) {
+  for (const std::vector<std::string>& group : roles[role]) {
+    if (group.size() != info_of(role).values) {
+      throw Error(ErrorCode::usage, name_of(role), std::to_string(group.size()) + " channels",
+                  std::to_string(info_of(role).values));
+    }
   }
+  return load(picture, roles[role]);
+}
+
+void require(const Picture& picture, const Roles& roles, Role role) {
+  if (roles.has(role)) return;
+  const std::string name(name_of(role));
+  const bool has_renderer =
+      std::any_of(roles.sought.begin(), roles.sought.end(), [](const std::string& sought) { return !sought.empty(); });
+  std::string wanted = roles.sought[static_cast<std::size_t>(role)];
+  if (!has_renderer) wanted = "a pass for it by the names of " + renderer_names();
+  if (!wanted.empty()) wanted += ", or ";
+  wanted += "--role " + name + "=CHANNELS (FILE:CHANNELS if another file has it)";
+  if (role == Role::material) wanted += ", or --profile (one material for everything)";
+  throw Error(ErrorCode::role_missing, name, "no such channel among " + channel_list(picture), wanted);
 }
 
 }  // namespace dermis::exr

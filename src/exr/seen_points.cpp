@@ -86,6 +86,12 @@ bool is_surface_position(const float* position) {
   return is_anywhere;
 }
 
+bool is_lossy(const Picture& picture, const ChannelSum& sum) {
+  return std::any_of(sum.begin(), sum.end(), [&](const std::vector<std::string>& group) {
+    return std::any_of(group.begin(), group.end(), [&](const std::string& name) { return is_lossy(picture, name); });
+  });
+}
+
 double relative_step(const Picture& picture, const std::string& channel) {
   if (picture.find(channel)->format == Format::f16) return step_f16;
   return picture.compression() == "pxr24" ? step_pxr24 : step_f32;

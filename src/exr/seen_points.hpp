@@ -44,7 +44,10 @@ SeenPoints seen_points(const Picture& picture, const Roles& roles);
 /// "Depth.Z is half". Empty if nothing does.
 std::string coarseness(const Picture& picture, const ChannelSum& sum);
 
-/// The same as a number: the values of a channel are multiples of that share of the power of 2 below them.
+/// True if the compression of the file spoils a channel of a role.
+bool is_lossy(const Picture& picture, const ChannelSum& sum);
+
+/// How a channel is rounded: its values are multiples of that share of the power of 2 below them.
 double relative_step(const Picture& picture, const std::string& channel);
 
 }  // namespace dermis::exr

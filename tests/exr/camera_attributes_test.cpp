@@ -192,6 +192,23 @@ TEST_CASE("the attributes of renderers tell the camera") {
   lens.attribute("unreal/camera/A/focalLength", "50.0");
   lens.attribute("unreal/camera/A/sensorWidth", "36.0");
   REQUIRE(find_camera(picture_with(lens), {}).camera.scale_x == Approx(width * 50.0 / 36));
+  // With overscan Unreal's field of view is that of all that it has rendered, not of the display window.
+  for (const char* name : {"unreal/camera/overscanPercentage", "unreal/camera/A/overscanPercent"}) {
+    for (const bool has_overscan : {false, true}) {
+      OIIO::ImageSpec overscan(width, height, 1, OIIO::TypeHalf);
+      overscan.full_x = 4;
+      overscan.full_y = 3;
+      overscan.full_width = width - 8;
+      overscan.full_height = height - 6;
+      overscan.attribute("unreal/camera/A/fov", fov);
+      overscan.attribute(name, has_overscan ? "0.25" : "0.0");
+      const FoundCamera found = find_camera(picture_with(overscan), {});
+      REQUIRE(found.camera.scale_x == Approx(has_overscan ? focal_px : focal_px * (width - 8) / width));
+      REQUIRE(found.camera.scale_y == found.camera.scale_x);
+      REQUIRE(found.camera.center_x == width / 2.0);
+      REQUIRE((found.source.find("with unreal/camera/") != std::string::npos) == has_overscan);
+    }
+  }
   OIIO::ImageSpec inches(width, height, 1, OIIO::TypeHalf);
   inches.attribute("CameraFocalLength", 50.0F);
   inches.attribute("CameraFilmApertureHorizontal", 1.41732F);

@@ -256,6 +256,60 @@ TEST_CASE("positions without depth give the camera and the depth") {
   }
 }
 
+TEST_CASE("a depth pass of another frame is told by its positions, one that is wrong here and there is not") {
+  Random random(30);
+  for (int i = 0; i < 10; ++i) {
+    const bool is_lens = i % 2 == 0;
+    Scene scene = random_scene(random, is_lens ? Camera::Projection::perspective : Camera::Projection::orthographic);
+    scene.camera.scale_y = scene.camera.scale_x;  // or the aspect of the pixels would be warned of
+    const double middle_x = random.uniform(20, 76);
+    const double middle_y = random.uniform(20, 44);
+    const double radius_px = random.uniform(8, 20);
+    // Something stands a tenth of its depth nearer than it did: from two hundred pixels on to a fifth of the picture.
+    scene.spoil = [&](int x, int y, float& depth, Position&) {
+      if (std::hypot(x - middle_x, y - middle_y) < radius_px) depth *= 0.9F;
+    };
+    const Picture moved = picture_of(scene);
+    const Roles roles = dermis::exr::find_roles(moved);
+    const FoundCamera found = find_camera(moved, roles);
+    require_near(found.camera, scene.camera, tolerance);
+    CAPTURE(found.warnings);
+    REQUIRE(found.warnings.size() == 1);
+    REQUIRE(found.warnings[0].starts_with("L.Depth.Z contradicts the positions all around "));
+    REQUIRE(found.axis);
+    const std::vector<float> used = dermis::exr::load_depth(moved, roles, found);
+    const double reach = is_lens ? 0 : scene.depth(0, 0) - used[0];
+    for (std::size_t k = 0; k < used.size(); ++k) {
+      const double expected = scene.depth(static_cast<int>(k) % scene.width, static_cast<int>(k) / scene.width);
+      REQUIRE(std::abs(used[k] + reach - expected) < 50 * tolerance * expected);
+    }
+
+    // Lines two pixels wide, as antialiasing leaves them, and every 20th pixel: a block of 3 x 3 that is all wrong
+    // takes three such pixels side by side, 1 block in 8000.
+    scene.spoil = [&](int x, int y, float& depth, Position&) {
+      if (x % 12 < 2 || (y % 12 > 2 && random.integer(0, 19) == 0)) depth *= 0.9F;
+    };
+    const FoundCamera still = found_in(scene);
+    require_near(still.camera, scene.camera, tolerance);
+    REQUIRE(still.warnings.empty());
+    REQUIRE_FALSE(still.axis);
+  }
+}
+
+TEST_CASE("a depth that is a multiple of the positions' is called that, one that is but rough is not") {
+  Random random(31);
+  Scene scene = random_scene(random, Camera::Projection::perspective);
+  scene.camera.scale_y = scene.camera.scale_x;
+  const auto warnings = [&] { return found_in(scene).warnings; };
+  scene.spoil = [](int, int, float& depth, Position&) { depth *= 3; };
+  REQUIRE(warnings() == Names{"L.Depth.Z is 3 times the depth of the positions: depth comes from the positions"});
+  // A thousandth of the depth is far beyond the noise of the positions.
+  scene.spoil = [&](int, int, float& depth, Position&) { depth *= random.coin() ? 1.004F : 0.996F; };
+  const Names rough = warnings();
+  CAPTURE(rough);
+  for (const std::string& warning : rough) REQUIRE(warning.find(" times ") == std::string::npos);
+}
+
 TEST_CASE("positions on one plane do not tell a depth") {
   Random random(29);
   for (const auto projection : {Camera::Projection::perspective, Camera::Projection::orthographic}) {

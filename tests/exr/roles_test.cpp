@@ -381,6 +381,61 @@ TEST_CASE("a role may lie in another file, which is read and not written") {
   REQUIRE(failure_of([&] { other.join(folder / "none.exr"); }).code == ErrorCode::input_missing);
 }
 
+TEST_CASE("a file that is joined says if it is of another frame") {
+  const TemporaryFolder folder;
+  const auto saved = [&](const std::string& name, const char* attribute, const char* value) {
+    Picture picture = picture_of(of("Depth", "Z"));
+    if (attribute != nullptr) picture.set_attribute(attribute, value);
+    picture.write(folder / name);
+    return folder / name;
+  };
+  Picture picture = picture_of(of("DiffDir", "RGB"));
+  picture.set_attribute("Frame", "0012");
+  picture.set_attribute("imageCounter", "12");
+  const std::string path = saved("13.exr", "Frame", "0013");
+  REQUIRE(picture.join(path) == path + " is of another frame: its Frame is 0013, that of the picture 0012");
+  REQUIRE(picture.join(path).empty());  // as it was said
+  REQUIRE_FALSE(picture.join(saved("14.exr", "imageCounter", "14")).empty());
+  REQUIRE(picture.join(saved("12.exr", "Frame", "0012")).empty());
+  REQUIRE(picture.join(saved("none.exr", nullptr, nullptr)).empty());
+}
+
+TEST_CASE("what makes up the beauty beside the diffuse light is found by the names of the renderer") {
+  const Names arnold = of("diffuse_direct", "RGB") + of("diffuse_albedo", "RGB") + of("specular_direct", "RGB") +
+                       of("coat", "RGB") + of("coat_indirect", "RGB") + of("emission", "RGB") + of("GlossCol", "RGB");
+  const Roles roles = find_roles(picture_of(arnold));
+  REQUIRE(roles.others.size() == 2);
+  REQUIRE(roles.others[0].light == ChannelSum{of("specular_direct", "RGB")});
+  REQUIRE(roles.others[1].light == ChannelSum{of("coat", "RGB"), of("coat_indirect", "RGB"), of("emission", "RGB")});
+  for (const dermis::exr::OtherLight& other : roles.others) REQUIRE(other.colour.empty());
+  const Names& missing = roles.missing_others;
+  REQUIRE(std::find(missing.begin(), missing.end(), "sss_direct") != missing.end());
+  REQUIRE(std::find(missing.begin(), missing.end(), "emission") == missing.end());
+
+  const Roles cycles = find_roles(picture_of(view_layer("L", true)));
+  REQUIRE(cycles.others.size() == 1);
+  REQUIRE(cycles.others[0].light == cycles[Role::specular]);
+  REQUIRE(cycles.others[0].colour == of("L.Glossy Color", "RGB"));
+  // What the caller says is all of the light.
+  const Names specular = {"specular=L.Glossy Direct"};
+  REQUIRE(find_roles(picture_of(view_layer("L", true)), {.overrides = specular}).others[0].colour.empty());
+}
+
+TEST_CASE("a role that is missing is asked for by the names of the renderer that was named") {
+  const Picture picture = picture_of(view_layer("L", false));
+  const Roles roles = find_roles(picture, {.renderer = dermis::exr::find_renderer("arnold")});
+  const Failure light = failure_of([&] { require(picture, roles, Role::light); });
+  REQUIRE(light.code == ErrorCode::role_missing);
+  REQUIRE(light.says("want diffuse_direct or diffuse_indirect (arnold), or --role light=CHANNELS"));
+  REQUIRE_FALSE(light.says("blender"));
+  REQUIRE(failure_of([&] { require(picture, roles, Role::mask); }).says("want Mask (any renderer), or --role mask="));
+  const Failure material = failure_of([&] { require(picture, roles, Role::material); });
+  REQUIRE(material.says("want --role material=CHANNELS"));
+  REQUIRE(material.says("--profile (one material for everything)"));
+  const Picture none = picture_of(of("x", "RGB"));
+  REQUIRE(failure_of([&] { require(none, find_roles(none), Role::light); }).says(dermis::exr::renderer_names()));
+}
+
 TEST_CASE("load sums the groups of a role pixel by pixel") {
   Random random(11);
   Picture picture({0, 0, 7, 5}, {0, 0, 7, 5});

@@ -96,6 +96,60 @@ TEST_CASE("a mask restricts to pixels where a channel of the reference has a val
                 {"CHANNEL=VALUE"});
 }
 
+TEST_CASE("a result is compared with path-traced pictures by its scattered light") {
+  const TemporaryFolder folder;
+  Random random(27);
+  const MadeScene scene = make_scene(folder / "in.exr", "touching", 61, 33, 4);
+  run_well(filter_arguments(scene, folder / "out.exr", {"--material", "1=skin", "--material", "2=wax"}));
+  const Picture result = Picture::read(folder / "out.exr");
+  // As Cycles writes subsurface scattering: half the light, twice the colour; a tenth more than ours on material 2.
+  const std::vector<float> ids = result.plane("ViewLayer.IndexMA.X");
+  const auto write_truth = [&](const std::string& name, double noise) {
+    PictureCopy copy(folder / "out.exr");
+    copy.without("ViewLayer.sss");
+    for (const std::string end : {".R", ".G", ".B"}) {
+      std::vector<float> light = result.plane("ViewLayer.sss" + end);
+      std::vector<float> colour = result.plane("ViewLayer.DiffCol" + end);
+      for (std::size_t i = 0; i < light.size(); ++i) {
+        light[i] *= (ids[i] == 2 ? 0.55F : 0.5F) * static_cast<float>(1 + noise * random.uniform(-1, 1));
+        colour[i] *= 2;
+      }
+      copy.with("ViewLayer.DiffDir" + end, light).with("ViewLayer.DiffCol" + end, colour);
+    }
+    copy.write(folder / name);
+    return folder / name;
+  };
+  const std::string out = folder / "out.exr";
+  const std::string clean = write_truth("clean.exr", 0);
+  const std::string one = run_well({"compare", out, "--truth", clean});
+  INFO(one);
+  CHECK(has(one, "the noise of the truth is in the error"));
+  CHECK(has(one, "rel_l2 0.09091"));  // 0.1 / 1.1, on material 2
+  const Outcome masked = run_program(
+      {"compare", out, "--truth", clean, "--mask-channel", "ViewLayer.IndexMA.X=1", "--max-rel-l2", "1e-6"});
+  CHECK(masked.exit_code == 0);
+  CHECK(run_program({"compare", out, "--truth", clean, "--max-rel-l2", "1e-3"}).exit_code == 1);
+
+  // Noise of 0.3 / sqrt(3) on 6000 values: six standard deviations are (0.17^2 / sqrt(6000)) 6 = 0.0023 of the square
+  // of the light, to which the mean square may add that brighter pixels count for more.
+  const std::string noisy = write_truth("noisy.exr", 0.3);
+  const std::string other = write_truth("other.exr", 0.3);
+  const auto within = [&](const std::vector<std::string>& truths, const std::string& limit) {
+    std::vector<std::string> words = {"compare", out, "--max-rel-l2", limit};
+    for (const std::string& truth : truths) words.insert(words.end(), {"--truth", truth});
+    return run_program(words).exit_code == 0;
+  };
+  CHECK_FALSE(within({noisy}, "0.14"));
+  CHECK(within({noisy, other}, "0.12"));
+  CHECK(has(run_well({"compare", out, "--truth", noisy, "--truth", other}), "noise of one truth 0.1"));
+
+  check_refused(run_program({"compare", out}), 2, {"B: got nothing to compare with", "--truth"});
+  check_refused(run_program({"compare", out, clean, "--truth", clean}), 2, {"B: got it with --truth"});
+  // A picture of its beauty alone is compared by that.
+  PictureCopy(clean).without("ViewLayer.Diff").write(folder / "beauty.exr");
+  CHECK(has(run_well({"compare", out, "--truth", folder / "beauty.exr"}), "compared: the beauty"));
+}
+
 TEST_CASE("channels that one picture lacks are named; none in common is an error") {
   const Pair pair(23);
   const std::string less = pair.folder / "less.exr";

@@ -156,6 +156,56 @@ TEST_CASE("passes that add up to the beauty: all ways to compose it agree, and n
   CHECK(is_identical(made.folder / "auto.exr", made.folder / "difference.exr"));
 }
 
+TEST_CASE("the passes of another renderer add up to the beauty by its own names") {
+  GlossyScene made(67);
+  const Picture picture = Picture::read(made.scene.path);
+  PictureCopy copy(made.scene.path);
+  for (std::size_t c = 0; c < 3; ++c) {
+    const std::vector<float> albedo = picture.plane(std::string("ViewLayer.DiffCol") + ends[c]);
+    std::vector<float> lit(made.pixels);
+    std::vector<float> half(made.pixels);
+    for (std::size_t i = 0; i < made.pixels; ++i) {
+      lit[i] = albedo[i] * made.light[c][i];
+      half[i] = (made.beauty[c][i] - lit[i]) / 2;
+    }
+    copy.with(std::string("diffuse_direct") + ends[c], lit).with(std::string("diffuse_albedo") + ends[c], albedo);
+    copy.with(std::string("specular_direct") + ends[c], half).with(std::string("coat_direct") + ends[c], half);
+    copy.with(std::string(1, ends[c][1]), made.beauty[c]);
+  }
+  for (const char* pass : {"Combined", "DiffDir", "DiffCol", "Gloss"}) copy.without(std::string("ViewLayer.") + pass);
+  for (const auto& channel : picture.channels())
+    if (const std::string pass = channel.name.substr(10); pass == "Depth.Z" || pass == "IndexMA.X")
+      copy.with(pass, picture.plane(channel.name)).without(channel.name);
+  const std::string arnold = made.folder / "arnold.exr";
+  copy.write(arnold);
+  const auto red = [&](const std::string& name) { return Picture::read(made.folder / name).plane("R"); };
+  const Words by_ids = {"--role", "material=IndexMA.X", "--compose"};
+  for (const std::string compose : {"difference", "sum", "beauty"}) {
+    Words words = by_ids;
+    words.push_back(compose);
+    const Outcome outcome = made.filter(arnold, compose + ".exr", words);
+    INFO(outcome.errors);
+    CHECK(outcome.exit_code == 0);
+    CHECK(outcome.errors.empty());
+  }
+  const std::vector<float> sum_red = red("sum.exr");
+  const std::vector<float> difference_red = red("difference.exr");
+  for (std::size_t i = 0; i < made.pixels; ++i) REQUIRE(sum_red[i] == Approx(difference_red[i]).margin(1e-5));
+  REQUIRE(sum_red != made.beauty[0]);
+
+  // Of what is not there, what could be is listed, and the beauty has a name of its own.
+  Words by_sum = by_ids;
+  by_sum.emplace_back("sum");
+  copy.without("coat_direct").write(arnold);
+  const std::string lost = made.filter(arnold, "lost.exr", by_sum).errors;
+  INFO(lost);
+  CHECK(has(lost, arnold + ": R,G,B: the passes are "));
+  CHECK(has(lost, "is lost or scattered, there being no coat_direct, "));
+  copy.without("specular_direct").write(arnold);
+  check_refused(made.filter(arnold, "x.exr", by_sum), 5,
+                {"--compose: got sum, and no pass of what R,G,B has beside the diffuse light: coat_direct, "});
+}
+
 TEST_CASE("noise in passes that is not in the beauty stays out of it") {
   GlossyScene made(61);
   const std::vector<float> factors = noise(made.random, made.pixels);

@@ -150,7 +150,7 @@ TEST_CASE("a file with lit light under another renderer's names gives the same s
   CHECK(has(bounces.errors, "light: no pass diffuse_direct beside diffuse_indirect.{R,G,B}"));
   CHECK(has(outcome.input, "(arnold, lit, without diffuse_indirect)"));
   check_refused(shot.filter("lit.exr", "x.exr", {"--material", "1=skin", "--preset", "blender"}), 5,
-                {"light: got no such channel"});
+                {"light: got no such channel", "want DiffDir or DiffInd (blender), or --role"});
   check_refused(shot.filter("lit.exr", "x.exr", {"--material", "1=skin", "--preset", "nuke"}), 2,
                 {"--preset: got nuke", "blender"});
 }
@@ -221,6 +221,32 @@ TEST_CASE("passes may lie in files of their own, with the number of the frame in
   check_refused(shot.filter("beauty.exr", "x.exr", words), 2, {"--role", "which has no number"});
   fs::remove(shot.folder / "ids.12.exr");
   check_refused(shot.filter("beauty.0012.exr", "x.exr", words), 3, {"ids.12.exr", "want an OpenEXR file"});
+}
+
+TEST_CASE("passes of another frame are warned of") {
+  const Shot shot;
+  const Picture picture = Picture::read(shot.scene.path);
+  shot.rename("ids.exr", {{"IndexMA.X", "X"}});
+  PictureCopy(shot.folder / "ids.exr").attribute("Frame", "13").write(shot.folder / "ids.exr");
+  PictureCopy(shot.scene.path).attribute("Frame", "12").write(shot.folder / "frame.exr");
+  Words words = both_materials;
+  words.insert(words.end(), {"--role", "material=" + (shot.folder / "ids.exr")});
+  const std::string said = "--role: " + (shot.folder / "ids.exr") + " is of another frame: its Frame is 13";
+  CHECK(has(shot.filter("frame.exr", "out.exr", words).errors, said));
+  const Outcome info = run_program({"info", shot.folder / "frame.exr", "--role", words.back(), "--focal-px", "99"});
+  CHECK(has(info.errors, "dermis: warning: " + (shot.folder / "frame.exr") + ": " + said));
+  CHECK_FALSE(has(shot.filter("in.exr", "out.exr", both_materials).errors, "frame"));
+
+  // Where something stands in the ids and nothing in the depth, beyond the width of an edge.
+  std::vector<float> depth = picture.plane(layer + "Depth.Z");
+  for (std::size_t i = 0; i < depth.size(); ++i)
+    if (i % 61 < 9 && i / 61 < 9) depth[i] = 1e10F;
+  PictureCopy(shot.scene.path).with(layer + "Depth.Z", depth).write(shot.folder / "hole.exr");
+  CHECK(has(shot.filter("hole.exr", "out.exr", both_materials).errors, "material: 81 pixels have no depth, "));
+  for (std::size_t i = 0; i < depth.size(); ++i)
+    if (i % 61 > 1) depth[i] = picture.plane(layer + "Depth.Z")[0];
+  PictureCopy(shot.scene.path).with(layer + "Depth.Z", depth).write(shot.folder / "edge.exr");
+  CHECK_FALSE(has(shot.filter("edge.exr", "out.exr", both_materials).errors, "have no depth"));
 }
 
 TEST_CASE("each view of a stereo picture is scattered") {

@@ -15,9 +15,11 @@
 #include "arguments/number_argument.hpp"
 #include "arguments/word_argument.hpp"
 #include "commands/commands.hpp"
+#include "commands/truth_comparison.hpp"
 #include "dermis/error.hpp"
 #include "dermis/exr.hpp"
 #include "files/channel_groups.hpp"
+#include "files/mask_channel.hpp"
 #include "files/output_file.hpp"
 #include "files/picture_png.hpp"
 
@@ -29,6 +31,7 @@ constexpr int differs = 1;  // exit code
 struct CompareArguments {
   std::string a;
   std::string b;
+  std::vector<std::string> truths;
   std::string channels;
   std::string mask_channel;
   std::optional<double> max_rel_l2;
@@ -47,22 +50,6 @@ exr::Window overlap_of(const exr::Window& a, const exr::Window& b) {
     throw Error(ErrorCode::input_unsupported, "A", text_of(a), "a window that overlaps that of B, " + text_of(b));
   if (!(a == b)) fmt::print("windows: A {}, B {}; compared: {}\n", text_of(a), text_of(b), text_of(both));
   return both;
-}
-
-/// NAME=VALUE: 1 where the channel of `b` has the value.
-oracle::Picture read_mask(const std::string& text, const exr::Picture& b, const exr::Window& window) {
-  const std::size_t equals = text.rfind('=');
-  const auto value = equals == std::string::npos ? std::nullopt : parse_real(std::string_view(text).substr(equals + 1));
-  if (!value) throw Error(ErrorCode::usage, "--mask-channel", text, "CHANNEL=VALUE, as ViewLayer.IndexMA.X=1");
-  const std::string name = text.substr(0, equals);
-  if (b.find(name) == nullptr)
-    throw Error(ErrorCode::role_missing, "--mask-channel", name + ", which B does not have",
-                "the full name of a channel");
-  oracle::Picture mask = values_of(b, {"", {name}}, window);
-  for (double& found : mask.values) found = found == *value ? 1 : 0;
-  if (std::count(mask.values.begin(), mask.values.end(), 1.0) == 0)
-    throw Error(ErrorCode::usage, "--mask-channel", text + ", which no pixel has", "a value that occurs");
-  return mask;
 }
 
 void print_missing(std::string_view picture, const std::vector<std::string>& channels) {
@@ -134,6 +121,15 @@ bool print_different_bits(const exr::Picture& a, const exr::Picture& b, const Sh
 }
 
 int run_compare(const CompareArguments& arguments) {
+  if (arguments.b.empty() == arguments.truths.empty())
+    throw Error(ErrorCode::usage, "B", arguments.b.empty() ? "nothing to compare with" : "it with --truth",
+                "a reference B, or --truth");
+  if (arguments.truths.size() > 2)
+    throw Error(ErrorCode::usage, "--truth", fmt::format("{} files", arguments.truths.size()), "one or two");
+  if (!arguments.truths.empty()) {
+    const double error = print_truth_error({arguments.a, arguments.truths, arguments.mask_channel});
+    return !arguments.max_rel_l2 || error <= *arguments.max_rel_l2 ? 0 : differs;
+  }
   if (!arguments.heatmap.empty()) check_writable("--heatmap", arguments.heatmap);
   const exr::Picture a = exr::Picture::read(arguments.a);
   const exr::Picture b = exr::Picture::read(arguments.b);
@@ -145,7 +141,7 @@ int run_compare(const CompareArguments& arguments) {
         "one at least");
   const exr::Window window = overlap_of(a.data_window(), b.data_window());
   std::optional<oracle::Picture> mask;
-  if (!arguments.mask_channel.empty()) mask = read_mask(arguments.mask_channel, b, window);
+  if (!arguments.mask_channel.empty()) mask = read_mask(arguments.mask_channel, "B", b, window);
 
   print_missing("A", shared.only_a);
   print_missing("B", shared.only_b);
@@ -171,15 +167,27 @@ Command add_compare(CLI::App& parent) {
   CLI::App* app = parent.add_subcommand("compare", "how far a picture is from a reference, per group of channels");
   const auto arguments = std::make_shared<CompareArguments>();
   app->add_option("a", arguments->a, "the picture")->required()->type_name("A");
-  app->add_option("b", arguments->b, "the reference")->required()->type_name("B");
-  app->add_option("--channels", arguments->channels, "only channels whose names start with this")->type_name("PREFIX");
-  app->add_option("--mask-channel", arguments->mask_channel, "only pixels where this channel of B has this value")
+  app->add_option("b", arguments->b, "the reference, unless there is a truth")->type_name("B");
+  auto* truth =
+      app->add_option(
+             "--truth", arguments->truths,
+             "a path-traced picture of the view: how far the scattered light of A is from it, for each material; "
+             "with a second one of another seed without the noise of both")
+          ->allow_extra_args(false)
+          ->type_name("FILE");
+  app->add_option("--channels", arguments->channels, "only channels whose names start with this")
+      ->excludes(truth)
+      ->type_name("PREFIX");
+  app->add_option("--mask-channel", arguments->mask_channel,
+                  "only pixels where this channel of B (with --truth: of A) has this value")
       ->type_name("NAME=VALUE");
   app->add_option("--max-rel-l2", arguments->max_rel_l2, "exit with 1 if the relative L2 of any group is above this")
       ->check(real_number([](double limit) { return limit >= 0; }, "a finite number >= 0"));
-  app->add_flag("--identical", arguments->identical, "exit with 1 if any bit of the common channels differs");
+  app->add_flag("--identical", arguments->identical, "exit with 1 if any bit of the common channels differs")
+      ->excludes(truth);
   app->add_option("--heatmap", arguments->heatmap, "draw the largest difference of each pixel")
       ->check(file_name_ending({".png"}))
+      ->excludes(truth)
       ->type_name("FILE.png");
   return {app, [arguments] { return run_compare(*arguments); }};
 }

@@ -16,6 +16,7 @@
 #include "arguments/number_argument.hpp"
 #include "arguments/word_argument.hpp"
 #include "commands/commands.hpp"
+#include "commands/input_report.hpp"
 #include "commands/surface_input.hpp"
 #include "dermis/error.hpp"
 #include "dermis/oracle/rule_2012.hpp"
@@ -129,6 +130,7 @@ int run_compare_methods(const CompareMethodsArguments& arguments) {
                 "light without it, for the rule of 2012 knows no other");
   Messages messages(arguments.messages);
   messages.begin(arguments.input);
+  warn_of_input(input.roles, input.camera, messages);
   count_pixels(input, request, messages);
   std::vector<float> beauty = exr::load(input.picture, input.roles, exr::Role::beauty);
   Frame frame = input.frame(request.mm_per_unit);

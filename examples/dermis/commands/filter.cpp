@@ -94,18 +94,26 @@ Stats run_plan(FilterSession& session, const Frame& frame, bool quiet) {
 std::string percent(double share) { return fmt::format("{:.2g} %", 100 * share); }
 
 /// How the beauty is to be put together, said where it matters.
-Compose choose_compose(Compose asked, const PassFit& fit, const std::string& beauty, Messages& messages) {
+Compose choose_compose(Compose asked, const PassFit& fit, const std::string& beauty, const exr::Roles& roles,
+                       Messages& messages) {
   const Compose right = choose_composition(fit);
   const Compose chosen = asked == Compose::automatic ? right : asked;
   const bool is_noisy = right != Compose::automatic;
   const bool needs_passes = chosen == Compose::sum || chosen == Compose::beauty;
+  const bool is_lost = needs_passes && !fit.adds_up() && !fit.is_complete();
+  if (is_lost && roles.others.empty())
+    throw Error(ErrorCode::role_missing, "--compose",
+                fmt::format("{}, and no pass of what {} has beside the diffuse light{}{}", name_of(chosen), beauty,
+                            roles.missing_others.empty() ? "" : ": ", fmt::join(roles.missing_others, ", ")),
+                "such passes, or --compose difference");
   std::string what;
   if (asked == Compose::automatic && chosen == Compose::beauty)
     what = "noise is in them that it has not: the light is what the other passes leave of it (--compose beauty)";
   else if (asked == Compose::automatic && chosen == Compose::sum)
     what = "it has noise that they have not: it is their sum where it scatters (--compose sum)";
-  else if (needs_passes && !fit.adds_up() && !fit.is_complete())
-    what = "what is in none of them is lost or scattered; want --compose difference";
+  else if (is_lost)
+    what = fmt::format("what is in none of them is lost or scattered{}{}; want --compose difference",
+                       roles.missing_others.empty() ? "" : ", there being no ", fmt::join(roles.missing_others, ", "));
   else if (chosen == Compose::automatic && fit.has_fireflies())
     what = "there the light is what the other passes leave of it (--compose difference: as it is)";
   else if (fit.too_bright > 0 || (chosen == Compose::difference && is_noisy))
@@ -240,7 +248,7 @@ ViewResult filter_view(const FilterJob& job, const PictureFiles& files, SurfaceI
     const std::vector<std::uint8_t> scatters = scattering_pixels(input.loaded, job.surface.profiles);
     const PassFit fit = measure_passes(parts, input.picture.width(), scatters);
     check_lighting(parts, fit, input.picture.width(), scatters, pass_of(channels.beauty), messages);
-    compose = choose_compose(job.compose, fit, pass_of(channels.beauty), messages);
+    compose = choose_compose(job.compose, fit, pass_of(channels.beauty), input.roles, messages);
     if (compose == Compose::beauty || (compose == Compose::automatic && fit.has_fireflies()))
       take_light_from_beauty(parts, scatters, compose == Compose::beauty, input.loaded.light);
   }
@@ -330,7 +338,7 @@ Outcome filter_picture(const FilterJob& job, const PictureFiles& files, FilterSe
   std::vector<ViewResult> results;
   for (const std::string& view : views) {
     SurfaceInput input = load_surface(picture, files.input, view, job.surface, !files.outputs.preview.empty());
-    for (const std::string& warning : input.camera.warnings) messages.warn(ErrorCode::role_missing, "camera", warning);
+    warn_of_input(input.roles, input.camera, messages);
     results.push_back(filter_view(job, files, input, session, step, messages));
   }
   write_pictures(job, files.outputs, results, picture);

@@ -15,6 +15,7 @@
 #include "arguments/profile_argument.hpp"
 #include "arguments/quality_arguments.hpp"
 #include "commands/commands.hpp"
+#include "commands/input_report.hpp"
 #include "dermis/error.hpp"
 #include "dermis/exr.hpp"
 #include "dermis/plan.hpp"
@@ -22,6 +23,7 @@
 #include "files/picture_roles.hpp"
 #include "files/surface_pixels.hpp"
 #include "report/json_text.hpp"
+#include "report/messages.hpp"
 #include "report/role_text.hpp"
 
 namespace dermis::program {
@@ -290,7 +292,9 @@ int run_info(const InfoArguments& arguments) {
       roles_of(info.picture, arguments.path, arguments.picture, views_of(info.picture, arguments.picture).front());
   info.cryptomattes = exr::find_cryptomattes(info.picture, info.roles, folder_of(arguments.path));
   find_camera(info, arguments.picture.camera);
-  if (info.camera) fmt::print(stderr, "{}", program::warnings_of(*info.camera, without_folders(arguments.path)));
+  Messages messages({});
+  messages.begin(arguments.path);
+  warn_of_input(info.roles, info.camera.value_or(exr::FoundCamera{}), messages);
   find_surfaces(info, profiles, arguments.picture.mm_per_unit);
   info.memory = find_memory(info, profiles, arguments.picture.mm_per_unit, cache_folder_of(arguments.cache_dir));
   fmt::print("{}", arguments.json ? json_text_of(info) : text_of(info));

@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <numeric>
 #include <string>
 
 #include "dermis/error.hpp"
 #include "dermis/words.hpp"
+#include "exr/frame_match.hpp"
 #include "files/surface_pixels.hpp"
 #include "report/role_text.hpp"
 
@@ -102,10 +104,16 @@ void report_material(const NamedProfile& named, const MaterialPixels& pixels, co
 
 }  // namespace
 
+void warn_of_input(const exr::Roles& roles, const exr::FoundCamera& camera, Messages& messages) {
+  for (const std::string& warning : roles.warnings) messages.warn(ErrorCode::input_unsupported, "--role", warning);
+  for (const std::string& warning : camera.warnings) messages.warn(ErrorCode::role_missing, "camera", warning);
+}
+
 LeftOut count_left_out(const SurfaceInput& input, const SurfaceRequest& request) {
   const LoadedFrame& loaded = input.loaded;
   const std::vector<float> beauty = exr::load(input.picture, input.roles, Role::beauty);
   LeftOut left_out;
+  std::vector<bool> lacks_depth(loaded.light.size() / 3);
   for (std::size_t i = 0; i < loaded.light.size() / 3; ++i) {
     const float depth = loaded.depth.empty() ? 1.0F : loaded.depth[i];
     const bool is_behind = is_background(depth);
@@ -114,7 +122,8 @@ LeftOut count_left_out(const SurfaceInput& input, const SurfaceRequest& request)
       const bool is_asked = std::any_of(request.profiles.begin(), request.profiles.end(), [&](const NamedProfile& its) {
         return its.id && static_cast<float>(*its.id) == id;
       });
-      if (is_behind && is_asked) ++left_out.background;
+      lacks_depth[i] = is_behind && is_asked;
+      if (lacks_depth[i]) ++left_out.background;
       if (!is_behind && loaded.cryptomatte.empty() && id != std::floor(id)) ++left_out.fractional_ids;
     }
     if (is_bad(loaded.light, i)) ++left_out.bad_light;
@@ -122,6 +131,7 @@ LeftOut count_left_out(const SurfaceInput& input, const SurfaceRequest& request)
     if (std::isnan(depth)) ++left_out.bad_depth;
     if (is_bad(beauty, i)) ++left_out.bad_beauty;
   }
+  left_out.inner_background = exr::count_inner(lacks_depth, loaded.width);
   return left_out;
 }
 
@@ -139,6 +149,13 @@ void report_input(const SurfaceInput& input, const SurfaceRequest& request, cons
                   fmt::format("{} pixels do not scatter, as their ids are no whole numbers; want ids that are not "
                               "antialiased, or names of a Cryptomatte",
                               left_out.fractional_ids));
+  const auto add = [](std::int64_t sum, const MaterialPixels& its) { return sum + its.pixels; };
+  const exr::FrameMatch ids{std::accumulate(pixels.begin(), pixels.end(), std::int64_t{0}, add),
+                            left_out.inner_background};
+  if (!ids.is_one_frame())
+    messages.warn(ErrorCode::input_unsupported, "material",
+                  fmt::format("{} pixels have no depth, and all around them have none; want ids and depth of one frame",
+                              left_out.background));
   if (left_out.bad_beauty > 0)
     messages.warn(ErrorCode::input_unsupported, "beauty",
                   fmt::format("{} pixels are not finite; they stay as they are", left_out.bad_beauty));

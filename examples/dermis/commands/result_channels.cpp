@@ -52,7 +52,8 @@ std::vector<std::string> scattered_channels(const exr::Picture& picture, const e
 }
 
 std::string pass_of(const std::vector<std::string>& channels) {
-  return channels.front().substr(0, channels.front().rfind('.'));
+  const std::size_t dot = channels.front().rfind('.');
+  return dot == std::string::npos ? fmt::format("{}", fmt::join(channels, ",")) : channels.front().substr(0, dot);
 }
 
 ResultChannels result_channels(OutputLayers layers, const SurfaceInput& input, Messages& messages) {

@@ -6,6 +6,7 @@
 #include <cctype>
 #include <filesystem>
 #include <optional>
+#include <utility>
 
 #include "dermis/error.hpp"
 #include "files/renderer_file.hpp"
@@ -76,10 +77,14 @@ exr::Roles roles_of(exr::Picture& picture, const std::string& path, const Pictur
     const std::vector<std::string> files = exr::files_of({&text, 1});
     request.overrides.push_back(files.empty() ? text : with_frame_number("--role", text, path));
   }
-  for (const std::string& file : exr::files_of(request.overrides)) picture.join(file);
+  std::vector<std::string> warnings;
+  for (const std::string& file : exr::files_of(request.overrides))
+    if (std::string warning = picture.join(file); !warning.empty()) warnings.push_back(std::move(warning));
   const std::optional<exr::Renderer> own = read_renderer(arguments.preset);
   request.renderer = own ? &*own : exr::find_renderer(arguments.preset);
-  return exr::find_roles(picture, request);
+  exr::Roles roles = exr::find_roles(picture, request);
+  roles.warnings = std::move(warnings);
+  return roles;
 }
 
 }  // namespace dermis::program

@@ -49,12 +49,6 @@ std::string text_of(const exr::FoundCamera& found) {
   return fmt::format("{}, from {}{}{}", kind, found.source, residual, axis.empty() ? depth : axis);
 }
 
-std::string warnings_of(const exr::FoundCamera& found, std::string_view path) {
-  std::string lines;
-  for (const std::string& warning : found.warnings) lines += fmt::format("dermis: warning: {}: {}\n", path, warning);
-  return lines;
-}
-
 json json_of(const exr::Roles& roles) {
   json result = {{"layer", roles.layer}, {"view", roles.view}, {"renderer", roles.renderer}};
   for (const exr::RoleInfo& info : exr::role_table) {

@@ -15,9 +15,6 @@ std::string text_of(const exr::ChannelSum& channels);
 /// "perspective, focal length 1511.1 x 1511.1 px, centre (480, 270), from position and depth (...)"
 std::string text_of(const exr::FoundCamera& found);
 
-/// What contradicts the camera of a file, for stderr: "dermis: warning: FILE: ...", a line each.
-std::string warnings_of(const exr::FoundCamera& found, std::string_view path);
-
 /// {"layer": ..., "light": [[names], ...], "mask": null, ...}
 nlohmann::json json_of(const exr::Roles& roles);
 

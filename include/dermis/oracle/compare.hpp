@@ -24,4 +24,15 @@ Difference compare(const Picture& a, const Picture& b);
 /// Compares the pixels where `where` (1 channel) is not zero. Throws Error(usage) if the sizes differ.
 Difference compare(const Picture& a, const Picture& b, const Picture& where);
 
+/// How far an image is from what path-traced ones show, which have noise.
+struct TruthError {
+  double relative_l2 = 0;  ///< without the noise if there are two; 0 if there is less than the noise leaves to see
+  double noise = 0;        ///< of one of the two, relative L2; 0 if both are the same
+};
+
+/// relative_l2 = sqrt(sum (a - t)(a - u) / sum t u) over the pixels where `where` (1 channel) is not zero, with two
+/// truths t and u of independent noise, which has the mean 0 in both sums. With the same one twice it is that of
+/// Difference, noise and all. A value that is not finite makes it infinite. Throws Error(usage) if the sizes differ.
+TruthError compare_with_truth(const Picture& a, const Picture& t, const Picture& u, const Picture& where);
+
 }  // namespace dermis::oracle

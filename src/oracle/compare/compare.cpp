@@ -89,6 +89,29 @@ Difference compare(const Picture& a, const Picture& b, const Picture& where) {
   return difference;
 }
 
+TruthError compare_with_truth(const Picture& a, const Picture& t, const Picture& u, const Picture& where) {
+  check(a, t, where);
+  check(a, u, where);
+  double off = 0;
+  double reference = 0;
+  double noise = 0;
+  for (std::size_t i = 0; i < a.values.size(); ++i) {
+    if (where.values[i / static_cast<std::size_t>(a.channels)] == 0) continue;
+    const double x = a.values[i];
+    const double first = t.values[i];
+    const double second = u.values[i];
+    if (!std::isfinite(x + first + second)) return {infinity, infinity};
+    off += (x - first) * (x - second);
+    reference += first * second;
+    noise += (first - second) * (first - second) / 2;
+  }
+  const auto relative = [&](double sum) {
+    if (sum <= 0) return 0.0;
+    return reference > 0 ? std::sqrt(sum / reference) : infinity;
+  };
+  return {relative(off), relative(noise)};
+}
+
 Difference compare(const Picture& a, const Picture& b) { return compare(a, b, Picture(a.width, a.height, 1, 1)); }
 
 }  // namespace dermis::oracle

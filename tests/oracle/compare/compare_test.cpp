@@ -5,6 +5,7 @@
 
 #include "dermis/error.hpp"
 #include "support/catch.hpp"
+#include "support/random.hpp"
 
 namespace dermis::oracle {
 
@@ -30,6 +31,42 @@ TEST_CASE("compare gives the textbook figures", "[compare]") {
   CHECK(d.max_x == 3);
   CHECK(d.max_a == 1);
   CHECK(d.max_b == 4);
+}
+
+TEST_CASE("an error against two noisy truths is without their noise, against one it is with it", "[compare]") {
+  Random random(90);
+  constexpr int pixels = 20000;
+  Picture truth(pixels, 1, 3);
+  Picture a(pixels, 1, 3);
+  Picture t(pixels, 1, 3);
+  Picture u(pixels, 1, 3);
+  Picture where(pixels, 1, 1, 1);
+  const double off = random.uniform(0.05, 0.2);
+  const double noise = random.uniform(0.2, 0.5);
+  for (std::size_t i = 0; i < truth.values.size(); ++i) {
+    truth.values[i] = random.uniform(0.5, 1.5);
+    a.values[i] = truth.values[i] + (random.coin() ? off : -off);
+    t.values[i] = truth.values[i] + noise * random.uniform(-1, 1);
+    u.values[i] = truth.values[i] + noise * random.uniform(-1, 1);
+  }
+  // Where nobody looks there may be anything.
+  where.values[7] = 0;
+  for (const std::size_t i : {21U, 22U, 23U}) a.values[i] = not_a_number;
+  const double size2 = 1 + 1.0 / 12;  // mean square of uniform values in 0.5..1.5
+  const double noise2 = noise * noise / 3;
+  // A sum over n = 60000 values of the product of two errors of variance noise2 (and of off^2 with one of them) has a
+  // standard deviation of sqrt(n (noise2^2 + 2 off^2 noise2)). Six of them: 2e-9 of all runs are beyond.
+  const double doubt = 6 * std::sqrt((noise2 * noise2 + 2 * off * off * noise2) / 60000) / size2;
+  const double wanted = off * off / size2;
+  const TruthError two = compare_with_truth(a, t, u, where);
+  CHECK(std::abs(two.relative_l2 * two.relative_l2 - wanted) < doubt + 0.02 * wanted);
+  CHECK(two.noise * two.noise == Approx(noise2 / size2).epsilon(0.05));
+  const TruthError one = compare_with_truth(a, t, t, where);
+  CHECK(one.relative_l2 == Approx(compare(a, t, where).relative_l2).epsilon(1e-12));
+  CHECK(one.relative_l2 * one.relative_l2 > wanted + noise2 / size2 / 2);
+  CHECK(one.noise == 0);
+  CHECK(compare_with_truth(t, t, u, where).relative_l2 == 0);
+  CHECK(compare_with_truth(a, t, u, Picture(pixels, 1, 1, 1)).relative_l2 == infinity);
 }
 
 TEST_CASE("compare finds the place of the largest difference", "[compare]") {
