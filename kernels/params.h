@@ -127,12 +127,14 @@ struct HiddenSample {
   float padding[2];
 };
 
-// A cube of space with hidden surface of one material: its samples one by one, for what is near, and joined to a few,
-// for what is far.
+// Hidden surface is there in so many levels of detail, for what is near and for what is far: in parts of pixels, and
+// joined in cubes, in small ones and in larger ones.
+#define HIDDEN_LEVELS 3
+
+// A cube of space with hidden surface of one material.
 struct HiddenCell {
   float low[3], high[3];  // mm: around the samples
-  int first_sample, samples;
-  int first_joined, joined;
+  int first[HIDDEN_LEVELS], samples[HIDDEN_LEVELS];
 };
 
 // How light goes from where it enters to where it leaves.
@@ -146,12 +148,13 @@ struct HiddenCell {
 struct HiddenMaterial {
   int first_cell, cells;
   float reach_mm;
-  float near_mm, far_mm;  // up to the one samples count one by one, from the other on joined, in between both in part
+  // From a level to the next one: up to the one distance all light is of the first, from the other on of the second.
+  float near_mm[HIDDEN_LEVELS - 1], far_mm[HIDDEN_LEVELS - 1];
   int crossing;
-  float slab_step_mm;  // of walks: from one thickness of slab_gain to the next, the first of which is 0
-  float bend_mm[3];    // how much a curvature of 1/mm adds
-  float mfp2_mm2[3];   // square of the mean free path
-  float slab_gain[SLAB_NODES][3];
+  float slab_step_mm;              // of walks: from one thickness of slab_gain to the next, the first of which is 0
+  float bend_mm[3];                // how much a curvature of 1/mm adds
+  float mfp2_mm2[3];               // square of the mean free path
+  float slab_gain[SLAB_NODES][4];  // the fourth is not used
 };
 
 // The choices of a run; each member is 0 or 1.

@@ -162,15 +162,19 @@ static inline vfloat projection_factor(const Target* target, global const struct
 #endif
 
 #if WALK
-// The gain of a slab of this thickness, in one channel.
-static inline vfloat slab_gain(global const struct HiddenMaterial* its, int channel, vfloat thickness_mm) {
+// The gains of slabs of these thicknesses.
+static inline vrgb slab_gain(global const struct HiddenMaterial* its, vfloat thickness_mm) {
   const vfloat at = clamp(thickness_mm / its->slab_step_mm, (vfloat)(0.0f), (vfloat)(SLAB_NODES - 1.001f));
-  vfloat gain;
-#define READ_LANE(lane)                                                                             \
-  {                                                                                                 \
-    const int node = (int)LANE(at, lane);                                                           \
-    const float below = its->slab_gain[node][channel];                                              \
-    LANE(gain, lane) = mix(below, its->slab_gain[node + 1][channel], LANE(at, lane) - (float)node); \
+  vrgb gain;
+#define READ_LANE(lane)                                                           \
+  {                                                                               \
+    const int node = (int)LANE(at, lane);                                         \
+    const float4 below = vload4(node, its->slab_gain[0]);                         \
+    const float4 above = vload4(node + 1, its->slab_gain[0]);                     \
+    const float4 value = fma(above - below, LANE(at, lane) - (float)node, below); \
+    LANE(gain.r, lane) = value.x;                                                 \
+    LANE(gain.g, lane) = value.y;                                                 \
+    LANE(gain.b, lane) = value.z;                                                 \
   }
   EACH_LANE(READ_LANE)
 #undef READ_LANE
@@ -187,11 +191,12 @@ static inline void add_walked(Sum* sum, global const struct HiddenMaterial* its,
   const vfloat along = dot_of(&way, nx, ny, nz) + thickness;
   const vfloat facing = -dot_of(&target->normal, nx, ny, nz);
   const vfloat opposite = select_or_zero(AS_MASK(thickness > 0.0f), fmax(facing, (vfloat)(0.0f)));
+  vrgb gain = broadcast_rgb((vfloat)(1.0f));
+  if (any_bit(AS_MASK(opposite > 0.0f))) gain = slab_gain(its, thickness);
 #define ADD_CHANNEL(name, channel)                                                            \
   {                                                                                           \
     const vfloat light = weight.name * sample->light[channel];                                \
-    const vfloat gain = 1.0f + opposite * (slab_gain(its, channel, thickness) - 1.0f);        \
-    sum->light.name = fma(light, gain, sum->light.name);                                      \
+    sum->light.name = fma(light, 1.0f + opposite * (gain.name - 1.0f), sum->light.name);      \
     const vfloat bend = its->bend_mm[channel] * along / (r_squared + its->mfp2_mm2[channel]); \
     sum->bent.name = fma(light, (1.0f - opposite) * bend, sum->bent.name);                    \
   }
@@ -202,19 +207,25 @@ static inline void add_walked(Sum* sum, global const struct HiddenMaterial* its,
 }
 #endif
 
-// Adds the samples from `first` on: those that are near, by 1 - s, or those that are joined, by s, where s goes from 0
-// to 1 between the distances of the material.
+// 0 up to the distance at which all light is of one level, 1 from that on at which it is of the next.
+static inline vfloat rise(vfloat r, global const struct HiddenMaterial* its, int level) {
+  const float per_mm = 1.0f / (its->far_mm[level] - its->near_mm[level]);
+  const vfloat t = clamp((r - its->near_mm[level]) * per_mm, (vfloat)(0.0f), (vfloat)(1.0f));
+  return t * t * (3.0f - 2.0f * t);
+}
+
+// Adds the samples of a level, as far as light from their distance is of it.
 SHARED void add_samples(Sum* sum, const Profile* profile, global const struct HiddenMaterial* its, const Target* target,
-                        global const struct HiddenSample* samples, int count, int is_joined) {
-  const float per_mm = 1.0f / (its->far_mm - its->near_mm);
+                        global const struct HiddenSample* samples, int count, int level) {
   for (int i = 0; i < count; ++i) {
     global const struct HiddenSample* sample = samples + i;
     const Vectors way = {sample->position[0] - target->at.x, sample->position[1] - target->at.y,
                          sample->position[2] - target->at.z};
     const vfloat r_squared = fma(way.x, way.x, fma(way.y, way.y, way.z * way.z));
-    const vfloat t = clamp((sqrt(r_squared) - its->near_mm) * per_mm, (vfloat)(0.0f), (vfloat)(1.0f));
-    const vfloat s = t * t * (3.0f - 2.0f * t);
-    const vfloat share = is_joined ? s : 1.0f - s;
+    const vfloat r = sqrt(r_squared);
+    vfloat share = (vfloat)(1.0f);
+    if (level > 0) share = rise(r, its, level - 1);
+    if (level < HIDDEN_LEVELS - 1) share -= rise(r, its, level);
     const vint counts = AS_MASK(share > 0.0f) & AS_MASK(r_squared < its->reach_mm * its->reach_mm);
     if (!any_bit(counts)) continue;
     const vrgb density = radial_at(profile, fma((vfloat)(PATCH), (vfloat)(sample->area_mm2), r_squared));
@@ -311,8 +322,9 @@ kernel void hidden_light(struct FrameParams f, struct FrameLayouts layouts, glob
 #endif
         for (int i = 0; i < cells.count; ++i) {
           global const struct HiddenCell* cell = all_cells + its->first_cell + (cells.is_listed ? cells.list[i] : i);
-          add_samples(&sum, &profile, its, &target, samples + cell->first_sample, cell->samples, 0);
-          add_samples(&sum, &profile, its, &target, samples + cell->first_joined, cell->joined, 1);
+          for (int level = 0; level < HIDDEN_LEVELS; ++level) {
+            add_samples(&sum, &profile, its, &target, samples + cell->first[level], cell->samples[level], level);
+          }
         }
         const vrgb squared = product(reciprocal, reciprocal);
         const vrgb light = product(sum.light, squared);

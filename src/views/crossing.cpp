@@ -11,7 +11,7 @@ namespace dermis {
 namespace {
 
 /// Light from farther away does not count.
-constexpr double share_within_reach = 0.998;
+constexpr double share_within_reach = 0.997;
 
 /// How much more light a sphere returns than a plane, per mean free path over its radius: by random walks, of any
 /// albedo.

@@ -13,11 +13,10 @@ namespace dermis {
 
 namespace {
 
-/// The side of a joined sample, and how far from a pixel samples are joined, as shares of the reach. Measured on thin
-/// parts: 0.1 .. 0.4 % of the light.
-constexpr double joined_side = 1.0 / 20;
-constexpr double near_reach = 2.0 / 20;
-constexpr double far_reach = 4.0 / 20;
+/// The sides of joined samples, and the distances from which on they count instead of finer ones, as shares of the
+/// reach; from half of such a distance on they count in part.
+constexpr std::array<double, HIDDEN_LEVELS - 1> joined_side = {1.0 / 20, 1.0 / 10};
+constexpr std::array<double, HIDDEN_LEVELS - 1> joined_from = {4.0 / 20, 6.0 / 10};
 constexpr double cell_side = 4.0 / 20;
 
 /// A pixel is split until its parts are no larger than this share of the reach, but into 4 x 4 at most.
@@ -227,8 +226,10 @@ std::vector<Sample> joined(std::span<const Sample> samples, double side_mm) {
 void append_cells(std::vector<Sample>& samples, params::HiddenMaterial material, HiddenSamples& to) {
   const double reach_mm = static_cast<double>(material.reach_mm);
   material.first_cell = static_cast<int>(to.cells.size());
-  material.near_mm = static_cast<float>(near_reach * reach_mm);
-  material.far_mm = static_cast<float>(far_reach * reach_mm);
+  for (std::size_t level = 0; level < joined_from.size(); ++level) {
+    material.near_mm[level] = static_cast<float>(joined_from[level] / 2 * reach_mm);
+    material.far_mm[level] = static_cast<float>(joined_from[level] * reach_mm);
+  }
   const double side_mm = cell_side * reach_mm;
   std::stable_sort(samples.begin(), samples.end(),
                    [&](const Sample& a, const Sample& b) { return cube_of(a.at, side_mm) < cube_of(b.at, side_mm); });
@@ -248,8 +249,10 @@ void append_cells(std::vector<Sample>& samples, params::HiddenMaterial material,
       count = static_cast<int>(some.size());
       for (const Sample& sample : some) to.samples.push_back(params_of(sample));
     };
-    append(its, cell.first_sample, cell.samples);
-    append(joined(its, joined_side * reach_mm), cell.first_joined, cell.joined);
+    append(its, cell.first[0], cell.samples[0]);
+    for (std::size_t level = 0; level < joined_side.size(); ++level) {
+      append(joined(its, joined_side[level] * reach_mm), cell.first[level + 1], cell.samples[level + 1]);
+    }
     to.cells.push_back(cell);
     first = last;
   }
