@@ -126,7 +126,11 @@ double print_truth_error(const TruthArguments& arguments) {
       if (ids[i] != id) where.values[i] = 0;
     print_error(fmt::format("material {}", id), compared, where);
   }
-  return print_error("all", compared, all);
+  // What has no material does not scatter; at its edges a path tracer mixes it with what does.
+  if (materials.size() < 2 || !materials.contains(0)) return print_error("all", compared, all);
+  for (std::size_t i = 0; i < ids.size(); ++i)
+    if (ids[i] == 0) all.values[i] = 0;
+  return print_error("all but 0", compared, all);
 }
 
 }  // namespace dermis::program

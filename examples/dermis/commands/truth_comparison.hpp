@@ -13,8 +13,9 @@ struct TruthArguments {
   std::string mask_channel;         ///< NAME=VALUE, in the result; or empty
 };
 
-/// Prints the relative L2 error of all pixels and of each material, of the diffuse light without the albedo of the
-/// result, or of the beauty if a truth has no diffuse light. Returns that of all pixels. Throws Error(role_missing) for
+/// Prints the relative L2 error of each material and of all pixels (without material 0, if there are others), of the
+/// diffuse light without the albedo of the result, or of the beauty if a truth has no diffuse light. Returns that of all
+/// pixels. Throws Error(role_missing) for
 /// what a picture lacks, Error(input_unsupported) if the windows differ.
 double print_truth_error(const TruthArguments& arguments);
 
