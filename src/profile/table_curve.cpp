@@ -112,9 +112,10 @@ double TableCurve::along_line(double x, const Function& near, Weights Segment::*
       const double c = std::cosh(u);
       return near(*segment, x * c, c);
     };
-    // The nearest singularity of what is summed is i pi / 2.
+    // What is summed is a polynomial of degree 5 in cosh u, divided by cosh u: its nearest singularity is i pi / 2, and
+    // over a tenth it is nearly a polynomial of degree 10 in u, of which 8 points leave 1e-13.
     if (end - begin < 0.1) {
-      sum += panel_integral<5>(begin, end, value);
+      sum += panel_integral<8>(begin, end, value);
     } else {
       const int panels = static_cast<int>(std::ceil(end - begin));
       const double width = (end - begin) / panels;

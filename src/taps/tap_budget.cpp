@@ -68,18 +68,21 @@ SizedTaps TapBudget::at(int level) {
 
 SizedTaps TapBudget::good_enough(int level) {
   const double pixel_mm = designed().radius_mm() / middle_radius_px(level);
-  SizedTaps taps = fitted(level, true);
-  double enough = design_.tolerance;
-  for (bool has_model = false; !has_highest_count(); taps = fitted(level, true)) {
+  std::optional<double> worthwhile;
+  const auto is_enough = [&](const SizedTaps& taps) {
     const double error = designed().predicted_rel_l2(taps.placed, pixel_mm);
-    if (error > enough && !has_model) {
-      enough = worthwhile_rel_l2(designed(), enough, pixel_mm);
-      has_model = true;
-    }
-    if (error <= enough) break;
-    ++present_;
+    if (error <= design_.tolerance) return true;
+    if (!worthwhile) worthwhile = worthwhile_rel_l2(designed(), design_.tolerance, pixel_mm);
+    return error <= *worthwhile;
+  };
+  SizedTaps taps = fitted(level, true);
+  if (is_enough(taps)) return taps;
+  // A search near the taps of the level before may end at twice the least error where kernels are some pixels wide. So
+  // one everywhere has to fail too before the count is raised.
+  for (near_px_.clear();; ++present_) {
+    taps = fitted(level, true);
+    if (has_highest_count() || is_enough(taps)) return taps;
   }
-  return taps;
 }
 
 SizedTaps TapBudget::fitted(int level, bool searches) {

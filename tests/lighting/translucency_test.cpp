@@ -288,8 +288,12 @@ TEST_CASE("the light of two lights is the sum of each one's", "[translucency]") 
   constexpr int width = 33;
   constexpr int height = 17;
   Case its(random, width, height, false, true);
-  its.sources = random_lights(random, 2);
-  for (RandomLight& source : its.sources) source.light.colour = {1, 1, 1};
+  its.sources.clear();
+  for (int i = 0; i < 2; ++i) {
+    // The first of some random lights is from behind.
+    its.sources.push_back(random_lights(random, 1).front());
+    its.sources.back().light.colour = {1, 1, 1};
+  }
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
       for (int c = 0; c < 3; ++c) its.light.set(x, y, c, 0);
@@ -309,13 +313,14 @@ TEST_CASE("the light of two lights is the sum of each one's", "[translucency]") 
     for (int x = 0; x < width; ++x) {
       for (int c = 0; c < 3; ++c) {
         const double sum = each[0].get(x, y, c) + each[1].get(x, y, c);
-        // Each is rounded three times: in the sum, and in the products with albedo before and after it.
+        // The sum of both is rounded, and with it the product with the albedo; alone each product with the albedo is
+        // rounded, and the one with the irradiance too if the device fuses it with the sum of both.
         CHECK(std::abs(both.get(x, y, c) - sum) <= 4 * 0x1p-24 * sum);
         lit += each[0].get(x, y, c) > 0 && each[1].get(x, y, c) > 0 ? 1 : 0;
       }
     }
   }
-  CAPTURE(lit);
+  CHECK(lit > 100);
 }
 
 TEST_CASE("a slab lit from behind shows what its thickness lets through", "[translucency]") {

@@ -177,6 +177,20 @@ TEST_CASE("a table keeps its values, does not overshoot and is 0 beyond", "[prof
   }
 }
 
+TEST_CASE("lines that touch a short steep segment of a table are summed exactly", "[profile]") {
+  // Over the step the angle t in r = x cosh t runs to 0.1, and R is a polynomial of degree 6 in it.
+  constexpr double step = 0.02;
+  const Profile profile = Profile::tabulated({{0, {1, 1, 1}}, {4 - step, {1, 1, 1}}, {4, {0, 0, 0}}, {5, {0, 0, 0}}});
+  for (const double x : {4 - step, 4 - step / 2, 4 - step / 10}) {
+    CAPTURE(x);
+    const double beyond = adaptive_integral([&](double t) { return profile.marginal(0, t); }, x, 4, 1e-13);
+    CHECK(profile.edge_tail(0, x) == Approx(beyond).epsilon(1e-11));
+    const double sum = 2 * adaptive_integral([&](double y) { return profile.radial(0, std::hypot(x, y)); }, 0,
+                                             std::sqrt(4 * 4 - x * x), 1e-13);
+    CHECK(profile.marginal(0, x) == Approx(sum).epsilon(1e-11));
+  }
+}
+
 TEST_CASE("the table of a smooth profile comes near to it", "[profile]") {
   const Profile smooth = Profile::gaussians({{1.0, {1, 1, 1}}});
   std::vector<TableRow> rows;
