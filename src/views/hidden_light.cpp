@@ -235,15 +235,8 @@ void HiddenLight::gather(FrameRun& run, const HiddenSamples& samples, const cl::
   set_arguments(kernel, run.frame(), run.images().layouts(), run.images().buffers({ImageName::albedo, depth, mask}),
                 run.memory().material_ids, run.materials(), state_->profiles.profiles, state_->profiles.nodes,
                 materials, cells, rows, seen_weights, run.deferred(), side, side);
-  run.queue().finish();
-  timespec t0, t1;
-  clock_gettime(CLOCK_MONOTONIC, &t0);
   run.launch(kernel, parts_of(run.size().width, side), parts_of(run.size().height, side), run.local_size());
-  run.queue().finish();
-  clock_gettime(CLOCK_MONOTONIC, &t1);
-  fprintf(stderr, "GATHER %.1f ms, %zu samples %zu cells\n",
-          double(t1.tv_sec - t0.tv_sec) * 1e3 + double(t1.tv_nsec - t0.tv_nsec) / 1e6, samples.samples.size(),
-          samples.cells.size());
+  run.queue().finish();  // while the samples are there
 }
 
 }  // namespace dermis
