@@ -153,12 +153,15 @@ kernel void view_pixels(struct FrameParams f, struct FrameLayouts layouts, globa
 #if HAS_ALBEDO
     its_albedo = read_rgb(&albedos, x);
 #endif
-    const vrgb its_light = scattering_light(&f, read_rgb(&lights, x), its_albedo);
+    const vrgb written_light = read_rgb(&lights, x);
+    const vrgb its_light = scattering_light(&f, written_light, its_albedo);
     const Vector at = position_at(&view, x, y);
     Vector its_normal = turned_to_camera(&view, read_vector(normal, &view_layouts.normal, x, y));
     its_normal = times_vector(rsqrt(dot_of(its_normal, its_normal)), its_normal);
     int its_material = material_at(&view, materials, x, y);
-    if (!is_finite_vector(at) || !is_finite_vector(its_normal) || !is_finite(its_light)) its_material = 0;
+    const int is_good = is_finite_vector(at) && is_finite_vector(its_normal) && is_finite(written_light) &&
+                        is_finite(its_albedo) && is_finite(its_light);
+    if (!is_good) its_material = 0;
     pixel->material = its_material;
     if (its_material == 0) continue;
     store_vector(pixel->position, at);

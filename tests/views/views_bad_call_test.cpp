@@ -63,7 +63,8 @@ TEST_CASE("views that lack something are refused", "[views][bad]") {
     check(call.failure([&](View& view) { view.*member = {}; }), ErrorCode::role_missing,
           std::string("view 2 ") + name + ": got no image, want an image");
   }
-  check(call.failure([](View& view) { view.width = 0; }), ErrorCode::usage, "view 2 size: got 0x0, want from 1x1");
+  check(call.failure([](View& view) { view.width = 0; }), ErrorCode::usage,
+        "view 2 size: got 0x" + std::to_string(call.views[1].height) + ", want 1..65536 pixels on each side");
   const Failure format = call.failure([](View& view) { view.position.layout.format = dermis::Format::u8; });
   CHECK(format.code == ErrorCode::usage);
   CHECK(format.says("view 2 position"));
