@@ -84,7 +84,7 @@ Place random_place(Random& random) { return random.coin() ? Place::behind : Plac
 }  // namespace
 
 // Device and oracle differ by the samples that the device joins, and by light from beyond the reach: without those they
-// agree to 1e-5. In 40 seeds all light is up to 0.3 % off, hidden light 0.5 %; of projected profiles 1.3 % and 2.1 %.
+// agree to 1e-5. In 20 seeds all light is up to 0.2 % off, hidden light 0.5 %; of projected profiles 1.3 % and 2.1 %.
 TEST_CASE("hidden light equals the sums of the oracle", "[views]") {
   const bool is_projected = GENERATE(false, true);
   for (const Subject subject : subjects) {
@@ -191,17 +191,17 @@ TEST_CASE("a sphere has its area and the whole of the profile, seen and hidden",
   const oracle::HiddenLight hidden = oracle::hidden_light(shown.frame, as_oracle, options);
   CAPTURE(test_seed(), static_cast<int>(place));
   const double half = 2 * std::numbers::pi * 100;
+  const bool is_whole = place == Place::corners;
   CHECK(hidden.area_mm2[0] > (is_whole ? 0.94 : 0.75) * half);
   CHECK(hidden.area_mm2[0] < 1.06 * half);
 
   const oracle::Picture all = scattered(shown.frame, materials, options);
   for (int c = 0; c < 3; ++c) {
-    double sum = 0, hidden_sum = 0, pixels = 0, brightest = 0, darkest = 1;
+    double sum = 0, pixels = 0, brightest = 0, darkest = 1;
     for (int y = 0; y < shown.frame.height; ++y) {
       for (int x = 0; x < shown.frame.width; ++x) {
         if (seen.touched(x, y) == 0) continue;
         sum += seen.weights(x, y, c) + hidden.weight(x, y, c);
-        hidden_sum += hidden.weight(x, y, c);
         pixels += 1;
         brightest = std::max(brightest, all(x, y, c));
         darkest = std::min(darkest, all(x, y, c));
@@ -227,4 +227,5 @@ TEST_CASE("a view that is given twice counts once", "[views]") {
   shown.frame.views = shown.views;
   const oracle::Picture twice = scattered(shown.with_light(shown.black), materials, options);
   CAPTURE(test_seed(), static_cast<int>(subject), materials[0].profile.is_projected());
+  CHECK(oracle::compare(twice, once).relative_l2 < 3e-2);
 }
