@@ -43,7 +43,8 @@ typedef long long Bytes;
 #define COUNTER_TILE_HEIGHT 7  // px, as the device chose it
 #define COUNTER_UNLIT 8        // pixels
 #define COUNTER_REACH 9        // px that taps of the vertical pass go at most
-#define RUN_COUNTERS 10
+#define COUNTER_REACHED 10     // pixels that hidden light reaches
+#define RUN_COUNTERS 11
 
 // Kinds of tile, as dermis::TileKind.
 #define TILE_WITHOUT_MATERIAL 0

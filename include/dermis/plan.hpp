@@ -213,6 +213,7 @@ struct Stats {
   std::int64_t channels_narrow = 0;  ///< of pixels scattered whose block shows one material: spread below half a pixel
   std::int64_t pixels_bad = 0;       ///< light or albedo not finite; counted where tiles are filtered
   std::int64_t pixels_unlit = 0;     ///< of those scattered by discs: skipped, without light within reach
+  std::int64_t pixels_reached = 0;   ///< of those scattered: some surface that only views show is in reach
   std::vector<ViewStats> views;      ///< one for each view of the frame
 
   /// Tiles of one kind.

@@ -122,7 +122,7 @@ static inline Vectors normal_at(const struct FrameParams* f, const InputRows* ro
   const Tangent a = tangent_x(f, &p, slopes[0]);
   const Tangent b = tangent_y(f, &p, slopes[1]);
   const Vectors n = {a.z * b.y - a.y * b.z, a.x * b.z - a.z * b.x, a.y * b.x - a.x * b.y};
-  const vfloat shorter = rsqrt(n.x * n.x + n.y * n.y + n.z * n.z);
+  const vfloat shorter = 1.0f / sqrt(n.x * n.x + n.y * n.y + n.z * n.z);
   const Vectors normal = {n.x * shorter, n.y * shorter, n.z * shorter};
   return normal;
 }
@@ -133,7 +133,7 @@ static inline void make_frame(Target* target) {
   const Vectors n = target->normal;
   const vint is_diagonal = AS_MASK(n.x == n.y) & AS_MASK(n.x == n.z);
   Vectors t = {n.z - n.y, select(n.x - n.z, n.x + n.z, is_diagonal), select(n.y - n.x, -n.y - n.x, is_diagonal)};
-  const vfloat shorter = rsqrt(t.x * t.x + t.y * t.y + t.z * t.z);
+  const vfloat shorter = 1.0f / sqrt(t.x * t.x + t.y * t.y + t.z * t.z);
   const Vectors first = {t.x * shorter, t.y * shorter, t.z * shorter};
   const Vectors second = {n.y * first.z - n.z * first.y, n.z * first.x - n.x * first.z, n.x * first.y - n.y * first.x};
   target->across[0] = first;
@@ -154,7 +154,7 @@ static inline vfloat projection_factor(const Target* target, global const struct
     const vfloat chance =
         (a == 0 ? 0.5f : 0.25f) * fabs(dot_of(&axes[a], sample->normal[0], sample->normal[1], sample->normal[2]));
     const vfloat along = axes[a].x * way.x + axes[a].y * way.y + axes[a].z * way.z;
-    sum += chance * chance * rsqrt(fmax(softened - along * along, (vfloat)(1e-8f)));
+    sum += chance * chance / sqrt(fmax(softened - along * along, (vfloat)(1e-8f)));
     all += chance * chance;
   }
   return sqrt(softened) * sum / all;
@@ -263,13 +263,15 @@ kernel void hidden_light(struct FrameParams f, struct FrameLayouts layouts, glob
                          global const struct MaterialParams* materials, global const struct ProfileParams* profiles,
                          global const float4* nodes, global const struct HiddenMaterial* hidden,
                          global const struct HiddenCell* all_cells, global const struct HiddenSample* samples,
-                         global const float* seen_weights, global float* deferred, int columns, int rows) {
+                         global const float* seen_weights, global float* deferred, global volatile int* counters,
+                         int columns, int rows) {
   const FrameInputs in = {
       .layouts = &layouts, .albedo = albedo, .depth = depth, .mask = mask, .material_ids = material_ids};
   const int x_begin = (int)get_global_id(0) * columns;
   const int y_begin = (int)get_global_id(1) * rows;
   const int x_end = min(x_begin + columns, f.width);
   const int y_end = min(y_begin + rows, f.height);
+  int count = 0;
   for (int m = 0; m < MATERIALS; ++m) {
     global const struct HiddenMaterial* its = hidden + m;
     if (its->cells == 0) continue;
@@ -342,7 +344,11 @@ kernel void hidden_light(struct FrameParams f, struct FrameLayouts layouts, glob
                           joined_light(seen.b, seen_weight.b, light.b, weight.b, bent.b)};
         const vint reached = mine & AS_MASK(weight.r + weight.g + weight.b > 0.0f);
         store_rgb(deferred, plane_size(&f), index, select_rgb(seen, all, reached));
+#define COUNT_LANE(lane) count -= LANE(reached, lane);
+        EACH_LANE(COUNT_LANE)
+#undef COUNT_LANE
       }
     }
   }
+  if (count > 0) atomic_add(counters + COUNTER_REACHED, count);
 }

@@ -83,7 +83,8 @@ static inline Vector way_along(const View* view, global const struct MaterialPar
     if (material_at(view, materials, u, v) != material) continue;
     const Vector there = position_at(view, u, v);
     const Vector normal_there = turned_to_camera(view, read_vector(view->normal, &view->layouts->normal, u, v));
-    if (!is_finite_vector(there) || !(dot_of(normal_there, normal) > 0.0f)) continue;
+    if (!is_finite_vector(there) || !is_finite_vector(normal_there)) continue;
+    if (!(dot_of(normal_there, normal) > 0.0f)) continue;
     const Vector way = times_vector((float)side, minus(there, at));
     ways[count] = minus(way, times_vector(dot_of(way, normal), normal));
     lengths[count] = sqrt(dot_of(ways[count], ways[count]));
@@ -153,12 +154,14 @@ kernel void view_pixels(struct FrameParams f, struct FrameLayouts layouts, globa
 #if HAS_ALBEDO
     its_albedo = read_rgb(&albedos, x);
 #endif
-    const vrgb its_light = scattering_light(&f, read_rgb(&lights, x), its_albedo);
+    const vrgb written_light = read_rgb(&lights, x);
+    const vrgb its_light = scattering_light(&f, written_light, its_albedo);
     const Vector at = position_at(&view, x, y);
     Vector its_normal = turned_to_camera(&view, read_vector(normal, &view_layouts.normal, x, y));
-    its_normal = times_vector(rsqrt(dot_of(its_normal, its_normal)), its_normal);
+    its_normal = times_vector(1.0f / sqrt(dot_of(its_normal, its_normal)), its_normal);
     int its_material = material_at(&view, materials, x, y);
-    if (!is_finite_vector(at) || !is_finite_vector(its_normal) || !is_finite(its_light)) its_material = 0;
+    if (!is_finite_vector(at) || !is_finite_vector(its_normal)) its_material = 0;
+    if (bad_lanes(its_material, written_light, its_albedo, its_light)) its_material = 0;
     pixel->material = its_material;
     if (its_material == 0) continue;
     store_vector(pixel->position, at);

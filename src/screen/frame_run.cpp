@@ -95,6 +95,12 @@ void FrameRun::launch_runs(const cl::Kernel& kernel, int width, int rows) {
   launch(kernel, item_is_pixel_ ? width : 1, rows, local_size());
 }
 
+void FrameRun::include(const FrameRun& other) {
+  last_.insert(last_.end(), other.last_.begin(), other.last_.end());
+  for (const auto& events : {other.events_.classify, other.events_.scatter})
+    phase_->insert(phase_->end(), events.begin(), events.end());
+}
+
 void FrameRun::classify() {
   using enum ImageName;
   phase_ = &events_.classify;
@@ -185,6 +191,7 @@ void FrameRun::add_to(Stats& stats) const {
   stats.channels_narrow = counted[COUNTER_CHANNELS];
   stats.pixels_bad = counted[COUNTER_BAD];
   stats.pixels_unlit = counted[COUNTER_UNLIT];
+  stats.pixels_reached = counted[COUNTER_REACHED];
   plan_.method->add_to(stats, *this);
 }
 

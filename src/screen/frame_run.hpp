@@ -66,8 +66,8 @@ class FrameRun {
   void launch(const cl::Kernel& kernel, int columns, int rows, int local);
   /// Launches a kernel of which a work-item has a run of pixels of a row: a pixel, or all.
   void launch_runs(const cl::Kernel& kernel, int width, int rows);
-  /// The next launch waits for this event as well.
-  void wait_for(const cl::Event& event) { last_.push_back(event); }
+  /// What another run has done counts as done by this step: the next launch waits for it.
+  void include(const FrameRun& other);
   int run_length(int width) const { return item_is_pixel_ ? 1 : width; }
   int local_size() const { return item_is_pixel_ ? 0 : 1; }
 

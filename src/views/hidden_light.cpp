@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <string>
-#include <utility>
 
 #include "opencl/program.hpp"
 #include "screen/methods/profile_tables.hpp"
@@ -219,7 +218,7 @@ cl::Buffer HiddenLight::sum_weights(FrameRun& run, const Frame& frame, RunMemory
   FrameRun weights(*state_->weights, frame, bound, memory, run.queue(), {&before, 1});
   weights.classify();
   for (int step = 0; step < weights.scatter_steps(); ++step) weights.scatter(step);
-  run.wait_for(weights.last_event());
+  run.include(weights);
   run.queue().finish();  // while `bound` and `ones` are there
   return weights.deferred();
 }
@@ -233,8 +232,9 @@ void HiddenLight::gather(FrameRun& run, const HiddenSamples& samples, const cl::
   cl::Kernel kernel(state_->gather, "hidden_light");
   set_arguments(kernel, run.frame(), run.images().layouts(), run.images().buffers({ImageName::albedo, depth, mask}),
                 run.memory().material_ids, run.materials(), state_->profiles.profiles, state_->profiles.nodes,
-                materials, cells, rows, seen_weights, run.deferred(), side, side);
+                materials, cells, rows, seen_weights, run.deferred(), run.memory().counters, side, side);
   run.launch(kernel, parts_of(run.size().width, side), parts_of(run.size().height, side), run.local_size());
+  run.queue().finish();  // while the samples are there
 }
 
 }  // namespace dermis

@@ -23,9 +23,10 @@ using dermis::build_constant;
 namespace {
 
 /// Names that an #if of a kernel asks for, each 0 or 1.
-const std::set<std::string> all_flags = {"HAS_ALBEDO", "HAS_DEPTH",   "HAS_MASK",      "HAS_MATERIAL", "HAS_MATTE",
-                                         "HAS_NORMAL", "HAS_STRETCH", "HAS_THICKNESS", "PIXEL_WIDTH",  "JITTER",
-                                         "SHEARED",    "LIT",         "TANGENT_DISC",  "INTERLEAVED"};
+const std::set<std::string> all_flags = {"HAS_ALBEDO",   "HAS_DEPTH",   "HAS_MASK",     "HAS_MATERIAL",
+                                         "HAS_MATTE",    "HAS_NORMAL",  "HAS_STRETCH",  "HAS_THICKNESS",
+                                         "PIXEL_WIDTH",  "JITTER",      "SHEARED",      "LIT",
+                                         "TANGENT_DISC", "INTERLEAVED", "SUMS_WEIGHTS", "PROJECTED"};
 
 /// Other names that an #if asks for.
 const std::set<std::string> not_flags = {
@@ -48,6 +49,8 @@ const std::vector<Group> groups = {
     {{"frame/prepare.cl", "separable/pixel.cl"}, {1}, {}},
     {{"frame/finish.cl", "integral/disc_texels.cl", "integral/disc.cl"}, {1}, {}},
     {{"classify/classify.cl", "classify/fingerprint.cl"}, {BLOCK}, {}},
+    {{"views/view_pixels.cl"}, {1}, {{"HAS_DEPTH", 1}}},
+    {{"views/hidden_light.cl"}, all_widths, {{"HAS_DEPTH", 1}}},
     {{"texture/texture_prepare.cl", "texture/texture_finish.cl", "texture/texture_blur.cl"}, all_widths, {{"LIT", 0}}},
     {{"texture/recursion.cl"}, all_widths, {{"LIT", 0}, {"HAS_ALBEDO", 0}, {"HAS_MASK", 0}}},
     {{"lighting/shadow_maps.cl", "lighting/shade.cl"}, {1}, {}},

@@ -13,7 +13,7 @@ inline std::vector<dermis::oracle::Material> oracle_materials(const std::vector<
     result.push_back({material.id, profile.width_follows_albedo(),
                       dermis::make_taps(profile, material.taps.value_or(taps)),
                       [profile](int c, double r) { return profile.radial(c, r); },
-                      [profile](int c, double r) { return profile.cdf(c, r); }});
+                      [profile](int c, double r) { return profile.cdf(c, r); }, profile.is_projected()});
   }
   return result;
 }

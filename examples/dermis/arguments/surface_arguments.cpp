@@ -1,5 +1,7 @@
 #include "arguments/surface_arguments.hpp"
 
+#include <fmt/format.h>
+
 #include "arguments/cryptomatte_argument.hpp"
 #include "arguments/help.hpp"
 #include "arguments/word_argument.hpp"
@@ -44,6 +46,9 @@ void check_surface(const SurfaceArguments& arguments) {
     throw Error(ErrorCode::usage, "--cryptomatte", arguments.cryptomatte.front() + " without --material",
                 "ID=PROFILE for its id");
   check_translucency(arguments.translucency);
+  if (!arguments.views.empty() && arguments.translucency.wanted)
+    throw Error(ErrorCode::usage, "--translucency", fmt::format("it with --view {}", arguments.views.front()),
+                "one of the two, as both add the light that comes through from behind");
 }
 
 SurfaceRequest request_of(const SurfaceArguments& arguments) {

@@ -28,6 +28,7 @@
 #include "files/output_file.hpp"
 #include "files/picture_png.hpp"
 #include "files/picture_roles.hpp"
+#include "files/view_factor.hpp"
 #include "report/messages.hpp"
 #include "report/progress_bar.hpp"
 #include "report/stats_report.hpp"
@@ -47,6 +48,7 @@ Frame frame_of(SurfaceInput& input, double mm_per_unit, const ResultChannels& ch
   frame.scattered = input.picture.view_to_write(channels.scattered);
   if (!channels.beauty.empty()) {
     beauty = exr::load(input.picture, input.roles, Role::beauty);
+    if (!input.view_factors.empty()) add_gain(input.view_factors, input.loaded, input.lighting, beauty);
     frame.beauty = image_of(beauty);
     frame.result = {.host = beauty.data()};
   }
@@ -78,7 +80,7 @@ void check_tiles(const std::string& tile_map, Method method, const DeviceInfo& d
 }
 
 /// The progress bar goes before anything else is printed.
-Stats run_plan(FilterSession& session, const Frame& frame, bool quiet) {
+Stats run_plan(FilterSession& session, const Frame& frame, const std::vector<LoadedView>& views, bool quiet) {
   std::optional<ProgressBar> bar;
   if (!quiet) bar.emplace();
   try {
@@ -87,7 +89,7 @@ Stats run_plan(FilterSession& session, const Frame& frame, bool quiet) {
       return true;
     });
   } catch (const Error& error) {
-    throw bad_pixels_named_as_option(error);
+    throw view_named_by_file(bad_pixels_named_as_option(error), views);
   }
 }
 
@@ -181,6 +183,12 @@ std::vector<MaterialReport> report_materials(const FilterJob& job, const std::ve
   return reports;
 }
 
+std::vector<std::string> files_of(const std::vector<LoadedView>& views) {
+  std::vector<std::string> files;
+  for (const LoadedView& view : views) files.push_back(view.path);
+  return files;
+}
+
 enum class Outcome { filtered, copied };
 
 /// What became of a view.
@@ -212,6 +220,7 @@ ViewResult copy_view(const FilterJob& job, SurfaceInput& input, FilterSession& s
       .camera = input.camera,
       .roles = input.roles,
       .materials = report_materials(job, std::vector<MaterialPixels>(job.surface.profiles.size()), nullptr),
+      .views = {},
       .input = {},
       .notes = {},
       .warnings = {}};
@@ -265,8 +274,9 @@ ViewResult filter_view(const FilterJob& job, const PictureFiles& files, SurfaceI
     throw named_as_option(error);
   }
   times.plan_ms = step.lap_ms();
-  Stats stats = run_plan(session, frame, messages.quiet());
+  Stats stats = run_plan(session, frame, input.loaded_views, messages.quiet());
   warn_of_bad_pixels(stats, job.options.bad_pixels, messages);
+  report_views(input.loaded_views, stats, messages);
   times.run_ms = step.lap_ms();
 
   if (has_beauty) finish_beauty(job, compose, parts, channels, input, beauty, messages);
@@ -280,6 +290,7 @@ ViewResult filter_view(const FilterJob& job, const PictureFiles& files, SurfaceI
            .camera = input.camera,
            .roles = input.roles,
            .materials = report_materials(job, pixels, plan),
+           .views = files_of(input.loaded_views),
            .input = {},
            .notes = {},
            .warnings = {}},

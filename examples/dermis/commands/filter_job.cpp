@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <string_view>
 #include <utility>
 
@@ -121,7 +122,9 @@ std::string record_of(const FilterArguments& arguments, const FilterJob& job) {
   }
   if (options.method == Method::disc) text += command_text(options.disc);
   if (options.method != Method::exact) add("--seed", options.seed);
-  for (const std::string& view : arguments.surface.views) add("--view", without_folders(view));
+  for (const std::string& view : arguments.surface.views) add("--view", std::filesystem::path(view).filename().string());
+  if (arguments.surface.view_factor != ViewFactor::automatic)
+    add("--view-factor", name_of(arguments.surface.view_factor));
   if (arguments.surface.lighting) add("--lighting", name_of(*arguments.surface.lighting));
   add("--albedo-mix", options.albedo_mix);
   text += command_text(arguments.surface.translucency);

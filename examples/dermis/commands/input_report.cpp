@@ -143,6 +143,7 @@ void report_input(const SurfaceInput& input, const SurfaceRequest& request, cons
   messages.input(fmt::format("camera: {}", text_of(input.camera)));
   for (std::size_t i = 0; i < pixels.size(); ++i) report_material(request.profiles[i], pixels[i], input, messages);
   if (const std::string text = text_of(left_out); !text.empty()) messages.input("left out: " + text);
+  if (!input.view_factors.empty()) messages.input("view factor: principled, taken out of the light that scatters");
   check_direct_light(input.roles, messages);
   if (left_out.fractional_ids > 0)
     messages.warn(ErrorCode::input_unsupported, "material",

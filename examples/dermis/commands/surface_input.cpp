@@ -13,6 +13,7 @@
 #include "dermis/error.hpp"
 #include "files/picture_roles.hpp"
 #include "files/surface_pixels.hpp"
+#include "files/view_factor.hpp"
 
 namespace dermis::program {
 namespace {
@@ -24,6 +25,15 @@ TranslucencyImages load_translucency_images(const exr::Picture& picture, const e
   for (const Role role : {Role::position, Role::normal, Role::albedo}) exr::require(picture, roles, role);
   return {exr::load(picture, roles, Role::position), exr::load(picture, roles, Role::normal),
           exr::load(picture, roles, Role::thickness)};
+}
+
+/// Where something scatters, for other pixels keep their light.
+void take_out_view_factor(SurfaceInput& input, const std::vector<NamedProfile>& profiles) {
+  input.view_factors = view_factors(input.picture, input.roles, input.camera);
+  const std::vector<std::uint8_t> scatters = scattering_pixels(input.loaded, profiles);
+  for (std::size_t i = 0; i < scatters.size(); ++i)
+    if (scatters[i] == 0) input.view_factors[i] = 1;
+  take_out(input.view_factors, input.loaded.light);
 }
 
 }  // namespace
@@ -43,7 +53,7 @@ exr::Picture read_picture(const std::string& path) {
 
 SurfaceInput load_surface(exr::Picture& picture, const std::string& path, const std::string& view,
                           const SurfaceRequest& request, bool needs_beauty) {
-  SurfaceInput input{picture, roles_of(picture, path, request.picture, view), {}, {}, {}, {}, false, {}, {}, true};
+  SurfaceInput input{picture, roles_of(picture, path, request.picture, view), {}, {}, {}, {}, {}, {}, {}, true};
   input.lighting = request.lighting.value_or(input.roles.lighting);
   require_roles(picture, input.roles, request.profiles, !request.mattes.empty());
   if (needs_beauty) exr::require(picture, input.roles, Role::beauty);
@@ -65,10 +75,8 @@ SurfaceInput load_surface(exr::Picture& picture, const std::string& path, const 
     input.camera.source = "none, as nothing scatters";
   }
   input.scatters = scatters();
-  input.takes_out_view_factor = takes_out_view_factor(request, input.roles);
-  if (input.scatters && input.takes_out_view_factor)
-    take_out_view_factor(picture, input.roles, input.camera, input.loaded.light);
-  if (input.scatters) input.loaded_views = load_views(request, path, input.camera);
+  if (input.scatters && takes_out_view_factor(request, input.roles)) take_out_view_factor(input, request.profiles);
+  if (input.scatters) input.loaded_views = load_views(request, path, input.camera, input.lighting);
   for (const LoadedView& loaded : input.loaded_views) input.views.push_back(loaded.view());
   if (request.lights) input.translucency = load_translucency_images(picture, input.roles);
   return input;

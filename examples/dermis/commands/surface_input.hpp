@@ -31,10 +31,10 @@ struct SurfaceInput {
   exr::FoundCamera camera;
   LoadedFrame loaded;
   std::optional<TranslucencyImages> translucency;
-  bool takes_out_view_factor = false;  ///< of the light
+  std::vector<float> view_factors;  ///< taken out of the light of each pixel; or empty
   std::vector<LoadedView> loaded_views;
   std::vector<View> views;  ///< of the images in loaded_views
-  bool scatters = true;  ///< any pixel; if none does there may be no camera
+  bool scatters = true;     ///< any pixel; if none does there may be no camera
 
   /// A view of the images, with the camera and nothing to write.
   Frame frame(double mm_per_unit) const;

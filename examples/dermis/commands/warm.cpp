@@ -42,7 +42,8 @@ FrameDescription usual_frames(const SurfaceRequest& surface) {
           .mask = false,
           .albedo = true,
           .matte = !surface.mattes.empty(),
-          .normal = false};
+          .normal = false,
+          .views = !surface.views.empty()};
 }
 
 /// Plans for a picture, and runs what else the filter would: all but the plan's own first launches.

@@ -2,11 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
+#include <algorithm>
+#include <cstddef>
 #include <limits>
+#include <string_view>
 
-#include "dermis/error.hpp"
 #include "files/picture_roles.hpp"
+#include "files/view_factor.hpp"
 
 namespace dermis::program {
 namespace {
@@ -21,7 +23,7 @@ void forget_background(std::vector<float>& position, const std::vector<float>& n
   }
 }
 
-LoadedView load_view(const SurfaceRequest& request, const std::string& path) {
+LoadedView load_view(const SurfaceRequest& request, const std::string& path, Lighting lighting) {
   exr::Picture picture = exr::Picture::read(path);
   // Channels and camera that the command line names are those of the picture itself.
   PictureArguments names;
@@ -33,13 +35,17 @@ LoadedView load_view(const SurfaceRequest& request, const std::string& path) {
     if (!roles.has(role))
       throw Error(ErrorCode::role_missing, fmt::format("--view {}", path), fmt::format("no {}", exr::name_of(role)),
                   fmt::format("a pass of {}", exr::info_of(role).what));
+  if (!request.lighting && roles.lighting != lighting)
+    throw Error(ErrorCode::input_unsupported, fmt::format("--view {}", path),
+                fmt::format("light that is {}", name_of(roles.lighting)),
+                fmt::format("{} as that of the picture, or --lighting", name_of(lighting)));
   LoadedView view{path,
                   load_images(picture, roles, request.profiles, request.mattes, folder_of(path)),
                   exr::load(picture, roles, Role::position),
                   exr::load(picture, roles, Role::normal),
                   {}};
   if (takes_out_view_factor(request, roles))
-    take_out_view_factor(picture, roles, exr::find_camera(picture, roles), view.images.light);
+    take_out(view_factors(picture, roles, exr::find_camera(picture, roles)), view.images.light);
   forget_background(view.position, view.normal);
   return view;
 }
@@ -63,16 +69,44 @@ bool takes_out_view_factor(const SurfaceRequest& request, const exr::Roles& role
 }
 
 std::vector<LoadedView> load_views(const SurfaceRequest& request, const std::string& path,
-                                   const exr::FoundCamera& camera) {
+                                   const exr::FoundCamera& camera, Lighting lighting) {
   std::vector<LoadedView> views;
   for (const std::string& name : request.views) {
     if (!camera.world_to_camera)
       throw Error(ErrorCode::role_missing, "--view", fmt::format("{} with a camera from {}", name, camera.source),
                   "a picture with positions that tell where its camera is");
-    views.push_back(load_view(request, with_frame_number("--view", name, path)));
+    views.push_back(load_view(request, with_frame_number("--view", name, path), lighting));
     views.back().to_camera = *camera.world_to_camera;
   }
   return views;
+}
+
+Error view_named_by_file(const Error& error, const std::vector<LoadedView>& views) {
+  constexpr std::string_view before_seen = ": got ";
+  constexpr std::string_view before_wanted = ", want ";
+  const std::string_view line = error.what();
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    const std::string name = fmt::format("view {}", i + 1);
+    const std::size_t seen = line.find(before_seen);
+    const std::size_t wanted = line.rfind(before_wanted);
+    if (line.substr(0, seen) != name || wanted == std::string_view::npos) continue;
+    const std::size_t seen_at = seen + before_seen.size();
+    return {error.code(), fmt::format("--view {}", views[i].path), line.substr(seen_at, wanted - seen_at),
+            line.substr(wanted + before_wanted.size())};
+  }
+  return error;
+}
+
+void report_views(const std::vector<LoadedView>& views, const Stats& stats, Messages& messages) {
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    const auto& [seen, hidden, contradicting] = stats.views[i];
+    messages.input(fmt::format("--view {}: {} pixels of surface that the camera does not see, {} that it does",
+                               views[i].path, hidden, seen));
+  }
+  if (!views.empty() && stats.pixels_reached == 0)
+    messages.warn(ErrorCode::input_unsupported, "--view",
+                  "no surface that only a view shows is within reach of any pixel: nothing is added; want a view from "
+                  "behind, or another --mm-per-unit");
 }
 
 }  // namespace dermis::program

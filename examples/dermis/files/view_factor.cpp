@@ -20,8 +20,7 @@ float factor_at(double cosine) {
 
 }  // namespace
 
-void take_out_view_factor(const exr::Picture& picture, const exr::Roles& roles, const exr::FoundCamera& camera,
-                          std::vector<float>& light) {
+std::vector<float> view_factors(const exr::Picture& picture, const exr::Roles& roles, const exr::FoundCamera& camera) {
   exr::require(picture, roles, Role::normal);
   exr::require(picture, roles, Role::position);
   if (!camera.eye)
@@ -31,7 +30,8 @@ void take_out_view_factor(const exr::Picture& picture, const exr::Roles& roles, 
   const std::vector<float> position = exr::load(picture, roles, Role::position);
   const bool is_parallel = camera.camera.projection == Camera::Projection::orthographic;
   const std::array<double, 3> eye = *camera.eye;
-  for (std::size_t i = 0; i < light.size(); i += 3) {
+  std::vector<float> factors(position.size() / 3, 1.0F);
+  for (std::size_t i = 0; i < position.size(); i += 3) {
     double along = 0;
     double rays = 0;
     double normals = 0;
@@ -43,9 +43,23 @@ void take_out_view_factor(const exr::Picture& picture, const exr::Roles& roles, 
       normals += n * n;
     }
     const double cosine = along / std::sqrt(rays * normals);
-    if (!std::isfinite(cosine)) continue;
-    const float factor = factor_at(cosine);
-    for (std::size_t k = 0; k < 3; ++k) light[i + k] /= factor;
+    if (std::isfinite(cosine)) factors[i / 3] = factor_at(cosine);
+  }
+  return factors;
+}
+
+void take_out(const std::vector<float>& factors, std::vector<float>& light) {
+  for (std::size_t i = 0; i < light.size(); ++i) light[i] /= factors[i / 3];
+}
+
+void add_gain(const std::vector<float>& factors, const LoadedFrame& loaded, Lighting lighting,
+              std::vector<float>& beauty) {
+  for (std::size_t i = 0; i < beauty.size(); ++i) {
+    if (factors[i / 3] == 1) continue;
+    const float share = loaded.matte.empty() ? 1.0F : std::clamp(loaded.matte[i / 3], 0.0F, 1.0F);
+    const float albedo = lighting == Lighting::raw ? loaded.albedo[i] : 1.0F;
+    const float gain = share * albedo * loaded.light[i] * (1 - factors[i / 3]);
+    if (std::isfinite(gain)) beauty[i] += gain;
   }
 }
 

@@ -1,10 +1,13 @@
 /// What a renderer's diffuse passes have of the angle at which the camera looks, and light under a surface has not.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "dermis/exr.hpp"
+#include "dermis/plan.hpp"
 #include "dermis/words.hpp"
+#include "files/loaded_frame.hpp"
 
 namespace dermis::program {
 
@@ -16,10 +19,17 @@ enum class ViewFactor {
   principled,  ///< it is taken out
 };
 
-/// Takes the factor out of light, RGB, of a picture that a camera has seen. Throws Error(role_missing) if the picture
-/// has no normals, or it is not known where the camera is.
-void take_out_view_factor(const exr::Picture& picture, const exr::Roles& roles, const exr::FoundCamera& camera,
-                          std::vector<float>& light);
+/// The factor of each pixel of a picture that a camera has seen; 1 where the picture does not tell. Throws
+/// Error(role_missing) if it has no normals, or it is not known where the camera is.
+std::vector<float> view_factors(const exr::Picture& picture, const exr::Roles& roles, const exr::FoundCamera& camera);
+
+/// Takes the factors out of light, RGB.
+void take_out(const std::vector<float>& factors, std::vector<float>& light);
+
+/// Gives the beauty what its diffuse light has gained when the factors were taken out of it, so that the filter, which
+/// replaces that light, leaves nothing of the gain.
+void add_gain(const std::vector<float>& factors, const LoadedFrame& loaded, Lighting lighting,
+              std::vector<float>& beauty);
 
 }  // namespace dermis::program
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cstddef>
 #include <nlohmann/json.hpp>
 
 #include "dermis/version.hpp"
@@ -59,12 +60,23 @@ json json_of(const MaterialReport& material) {
           {"design", design_of(material)}};
 }
 
+json hidden_light_of(const StatsReport& report) {
+  if (report.views.empty()) return nullptr;
+  json object = {{"pixels", report.stats.pixels_reached}, {"views", json::array()}};
+  for (std::size_t i = 0; i < report.views.size(); ++i) {
+    const auto& [seen, hidden, contradicting] = report.stats.views[i];
+    object["views"].push_back(
+        {{"file", report.views[i]}, {"seen", seen}, {"hidden", hidden}, {"contradicting", contradicting}});
+  }
+  return object;
+}
+
 json times_of(const StatsReport& report) {
   return {{"read", report.times.read_ms},       {"plan", report.times.plan_ms},
           {"prepare", report.stats.prepare_ms}, {"classify", report.stats.classify_ms},
-          {"scatter", report.stats.scatter_ms}, {"finish", report.stats.finish_ms},
-          {"run", report.times.run_ms},         {"write", report.times.write_ms},
-          {"total", report.times.total_ms}};
+          {"scatter", report.stats.scatter_ms}, {"views", report.stats.views_ms},
+          {"finish", report.stats.finish_ms},   {"run", report.times.run_ms},
+          {"write", report.times.write_ms},     {"total", report.times.total_ms}};
 }
 
 std::string text_of(const MaterialReport& material) {
@@ -110,6 +122,7 @@ std::string text_of_steps(const StatsReport& report) {
   line("  prepare", stats.prepare_ms);
   line("  classify", stats.classify_ms);
   line("  scatter", stats.scatter_ms);
+  if (!report.views.empty()) line("  views", stats.views_ms);
   line("  finish", stats.finish_ms);
   line("write", times.write_ms);
   line("total", times.total_ms);
@@ -145,6 +158,7 @@ json json_of(const StatsReport& report) {
                       {"narrow_channels", stats.channels_narrow},
                       {"bad", stats.pixels_bad},
                       {"unlit", stats.pixels_unlit}};
+  object["hidden_light"] = hidden_light_of(report);
   for (const MaterialReport& material : report.materials) object["materials"].push_back(json_of(material));
   return object;
 }
@@ -183,8 +197,15 @@ std::string text_of(const StatsReport& report) {
   text += counted("flat", stats.pixels_flat, stats.pixels);
   text += counted("bad", stats.pixels_bad, stats.pixels);
   if (options.method == Method::disc) text += counted("unlit", stats.pixels_unlit, stats.pixels);
+  if (!report.views.empty()) text += counted("reached by views", stats.pixels_reached, stats.pixels);
   text += fmt::format("channels    {}\n", 3 * stats.pixels_scattered);
   text += counted("narrow", stats.channels_narrow, 3 * stats.pixels_scattered);
+  for (std::size_t i = 0; i < report.views.size(); ++i) {
+    const std::int64_t all = stats.views[i].seen + stats.views[i].hidden;
+    text += fmt::format("view        {}, {} pixels of surface\n", report.views[i], all);
+    text += counted("hidden", stats.views[i].hidden, all);
+    text += counted("seen", stats.views[i].seen, all);
+  }
   return text + text_of_steps(report);
 }
 

@@ -40,6 +40,7 @@ struct StatsReport {
   exr::FoundCamera camera;
   exr::Roles roles;
   std::vector<MaterialReport> materials;
+  std::vector<std::string> views;     ///< the files of stats.views
   std::vector<std::string> input;     ///< what was taken from the picture, as printed
   std::vector<std::string> notes;     ///< as printed
   std::vector<std::string> warnings;  ///< as printed

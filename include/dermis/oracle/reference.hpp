@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <span>
+#include <vector>
 
 #include "dermis/frame.hpp"
 #include "dermis/oracle/picture.hpp"
@@ -11,14 +12,15 @@
 
 namespace dermis::oracle {
 
-/// A material, as the oracle needs it. Only surface_integral and disc use `radial` and `cdf`; of `taps` they use only
-/// the radii, to find the kernels that are narrower than half a pixel.
+/// A material, as the oracle needs it. Only surface_integral, disc and hidden_light use `radial` and `cdf`; of `taps`
+/// they use only the radii, to find the kernels that are narrower than half a pixel.
 struct Material {
   int id = 0;
   bool width_follows_albedo = false;
   Taps taps;
   std::function<double(int channel, double r_mm)> radial;  ///< R(r), 1/mm^2
   std::function<double(int channel, double r_mm)> cdf;     ///< share of the light within r, 0..1
+  bool is_projected = false;                               ///< Profile::is_projected
 };
 
 /// The outputs that a filter should have written, and bounds on how far a float32 device may be off.
@@ -28,6 +30,7 @@ struct Reference {
   Picture result;           ///< RGB, as Frame::result; empty if the frame has no beauty
   Picture result_bound;
   Picture touched;  ///< 1 channel: 1 where the filter scattered, 0 where it must leave the pixel alone
+  Picture weights;  ///< RGB, of surface_integral alone: what it divides by where the filter scattered, else 0
 };
 
 /// Sums the taps of the separable filter pixel by pixel; see Taps. Where a pass has no taps for a pixel (level -1, or a
@@ -49,6 +52,23 @@ Reference separable(const Frame& frame, std::span<const Material> materials, con
 /// device adds is not derived here, but set by the tables of R that it reads.
 Reference surface_integral(const Frame& frame, std::span<const Material> materials, const Options& options,
                            int finer = 1);
+
+/// What enters where only the views of a frame look, per pixel that scatters; 0 for the others.
+struct HiddenLight {
+  Picture light;                 ///< RGB: sum of R E A over the hidden surface
+  Picture weight;                ///< RGB: sum of R A
+  std::vector<double> area_mm2;  ///< of the hidden surface of each material
+};
+
+/// Sums the light of every hidden sample for every pixel, out to any distance. The samples: a pixel of a view is a
+/// parallelogram whose sides are the ways along the surface to the next pixels, each the mean of those to the next and
+/// from the last one that face the same way, without one more than twice as long as the other, and no longer than 12.5
+/// times the median of all shorter sides. It is hidden unless one of the 3 x 3 pixels of the frame about it shows its
+/// material within 1.5 pixels of its plane, and it faces the camera. Its area is 1 over the sum of the pixels per area
+/// of all views that show the place. It is split into k x k parts, at most 4 x 4, until they are no larger than 1 / 80
+/// of the distance within which 99.8 % of the widest channel's light leaves. R of a part is R(sqrt(r^2 + 0.08 A)), for
+/// a projected profile times r sum_a w_a / r_a: see Profile::projected.
+HiddenLight hidden_light(const Frame& frame, std::span<const Material> materials, const Options& options);
 
 /// Estimates that integral by samples on discs; see DiscOptions. Of n samples sample i has the distance r at which the
 /// share s/16 + (1 - s/16) (i + 1/2) / n of the widest channel's light has left, the direction i times the golden

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include "dermis/oracle/reference.hpp"
@@ -127,7 +128,12 @@ class Integral {
     }
   }
 
-  std::array<double, 3> at(Pixel p) const {
+  struct Value {
+    std::array<double, 3> light;
+    std::array<double, 3> weights;
+  };
+
+  Value at(Pixel p) const {
     const int m = surface_.at(p.x, p.y).material;
     std::array<double, 3> weights = own_share(p);
     std::array<double, 3> sums;
@@ -141,7 +147,7 @@ class Integral {
       }
     }
     for (int c = 0; c < 3; ++c) sums[c] /= weights[c];
-    return sums;
+    return {sums, weights};
   }
 
  private:
@@ -201,16 +207,21 @@ Reference surface_integral(const Frame& frame, std::span<const Material> materia
   BoundedPicture scattered = light.filtered();
   const Picture before = scattered.value;
   const Integral integral(surface, materials, before, finer);
+  Picture weights(surface.width(), surface.height(), 3);
   for (int y = 0; y < surface.height(); ++y) {
     for (int x = 0; x < surface.width(); ++x) {
       if (!surface.at(x, y).takes_light()) continue;
-      const std::array<double, 3> values = integral.at({x, y});
-      for (int c = 0; c < 3; ++c) scattered.value(x, y, c) = values[c];
+      const Integral::Value value = integral.at({x, y});
+      for (int c = 0; c < 3; ++c) {
+        scattered.value(x, y, c) = value.light[c];
+        weights(x, y, c) = value.weights[c];
+      }
     }
   }
   Reference reference = compose(surface, light, scattered);
   reference.scattered_bound = {};
   reference.result_bound = {};
+  reference.weights = std::move(weights);
   return reference;
 }
 
