@@ -1,7 +1,9 @@
 /// The filter in plain scalar double precision, to check the kernels against. It shares no code with them.
 #pragma once
 
+#include <array>
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -12,6 +14,12 @@
 
 namespace dermis::oracle {
 
+/// The medium of a random walk, per channel.
+struct WalkMedium {
+  std::array<double, 3> mfp_mm;
+  std::array<double, 3> scattering_albedo;  ///< what a scattering leaves
+};
+
 /// A material, as the oracle needs it. Only surface_integral, disc and hidden_light use `radial` and `cdf`; of `taps`
 /// they use only the radii, to find the kernels that are narrower than half a pixel.
 struct Material {
@@ -21,6 +29,7 @@ struct Material {
   std::function<double(int channel, double r_mm)> radial;  ///< R(r), 1/mm^2
   std::function<double(int channel, double r_mm)> cdf;     ///< share of the light within r, 0..1
   bool is_projected = false;                               ///< Profile::is_projected
+  std::optional<WalkMedium> walk = {};                     ///< if the profile is that of random walks
 };
 
 /// The outputs that a filter should have written, and bounds on how far a float32 device may be off.
@@ -57,6 +66,7 @@ Reference surface_integral(const Frame& frame, std::span<const Material> materia
 struct HiddenLight {
   Picture light;                 ///< RGB: sum of R E A over the hidden surface
   Picture weight;                ///< RGB: sum of R A
+  Picture bent;                  ///< RGB: what curvature adds to the light of random walks
   std::vector<double> area_mm2;  ///< of the hidden surface of each material
 };
 
@@ -66,8 +76,9 @@ struct HiddenLight {
 /// times the median of all shorter sides. It is hidden unless one of the 3 x 3 pixels of the frame about it shows its
 /// material within 1.5 pixels of its plane, and it faces the camera. Its area is 1 over the sum of the pixels per area
 /// of all views that show the place. It is split into k x k parts, at most 4 x 4, until they are no larger than 1 / 80
-/// of the distance within which 99.8 % of the widest channel's light leaves. R of a part is R(sqrt(r^2 + 0.08 A)), for
-/// a projected profile times r sum_a w_a / r_a: see Profile::projected.
+/// of the distance within which 99.7 % of the widest channel's light leaves. R of a part is R(sqrt(r^2 + 0.08 A)), for
+/// a projected profile times r sum_a w_a / r_a: see Profile::projected. Of random walks, pairs that face away from each
+/// other count as the faces of a slab, and curvature adds `bent`: METHODS.md, "Light from behind".
 HiddenLight hidden_light(const Frame& frame, std::span<const Material> materials, const Options& options);
 
 /// Estimates that integral by samples on discs; see DiscOptions. Of n samples sample i has the distance r at which the

@@ -9,13 +9,14 @@
 #include "oracle/frame/surface.hpp"
 #include "oracle/math/vec3.hpp"
 #include "oracle/views/patches.hpp"
+#include "oracle/views/walk_crossing.hpp"
 
 namespace dermis::oracle {
 
 namespace {
 
 /// The share of the light within the reach of a material, and the largest part of a patch beside that.
-constexpr double share_within_reach = 0.998;
+constexpr double share_within_reach = 0.997;
 constexpr double parts_per_reach = 80;
 constexpr int most_parts = 4;
 
@@ -149,7 +150,13 @@ HiddenLight hidden_light(const Frame& frame, std::span<const Material> materials
   const FrameImages images = read_images(frame);
   const Surface surface(frame, images, materials, false);
   const std::vector<std::vector<Sample>> samples = hidden_samples(frame, surface, materials, options);
-  HiddenLight hidden{Picture(frame.width, frame.height, 3), Picture(frame.width, frame.height, 3), {}};
+  const Picture none(frame.width, frame.height, 3);
+  HiddenLight hidden{none, none, none, {}};
+  std::vector<std::optional<WalkCrossing>> walks;
+  for (const Material& material : materials) {
+    walks.emplace_back();
+    if (material.walk) walks.back().emplace(material, reach_of(material));
+  }
   for (const std::vector<Sample>& its : samples) {
     double area_mm2 = 0;
     for (const Sample& sample : its) area_mm2 += sample.area_mm2;
@@ -169,7 +176,13 @@ HiddenLight hidden_light(const Frame& frame, std::span<const Material> materials
           const double k = pixel.width_factor[c].value;
           const double weight = area * material.radial(c, r_mm / k) / (k * k);
           hidden.weight(x, y, c) += weight;
-          hidden.light(x, y, c) += weight * sample.light[c];
+          if (walks[pixel.material]) {
+            const WalkCrossing::Gain gain = walks[pixel.material]->gain(c, target.axes[0], sample.normal, way, r_mm);
+            hidden.light(x, y, c) += weight * sample.light[c] * gain.slab;
+            hidden.bent(x, y, c) += weight * sample.light[c] * gain.bend;
+          } else {
+            hidden.light(x, y, c) += weight * sample.light[c];
+          }
         }
       }
     }
