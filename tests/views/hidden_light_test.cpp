@@ -138,17 +138,18 @@ TEST_CASE("hidden light equals the sums of the oracle", "[views]") {
 
 // How much of the profile the passes find on the visible surface shows where that alone is lit, evenly: they scatter
 // such light to S w / min(w + W, 1).
-TEST_CASE("separable passes join their light with hidden light by their own weights", "[views]") {
-  Random random(40);
+TEST_CASE("separable passes and discs join their light with hidden light by their own weights", "[views]") {
+  const Method method = GENERATE(Method::separable, Method::disc);
+  Random random(40 + static_cast<unsigned>(method));
   const auto subject = static_cast<Subject>(random.integer(0, 2));
   Shown shown(closed_scene(random, subject, random_place(random)));
   const std::vector<dermis::Material> materials =
       random_materials(random, random.coin() ? Crossing::projected : Crossing::distance);
-  const Options options{.method = Method::separable};
+  const Options options{.method = method};
   const auto as_oracle = oracle_materials(materials, options.taps);
   const oracle::Reference exact = oracle::surface_integral(shown.frame, as_oracle, options);
   const oracle::HiddenLight hidden = oracle::hidden_light(shown.frame, as_oracle, options);
-  CAPTURE(test_seed(), static_cast<int>(subject), materials[0].profile.is_projected());
+  CAPTURE(test_seed(), static_cast<int>(method), static_cast<int>(subject), materials[0].profile.is_projected());
 
   const oracle::Picture all = scattered(shown.frame, materials, options);
   Shown dark_behind(shown.scene);
