@@ -122,7 +122,8 @@ std::string record_of(const FilterArguments& arguments, const FilterJob& job) {
   }
   if (options.method == Method::disc) text += command_text(options.disc);
   if (options.method != Method::exact) add("--seed", options.seed);
-  for (const std::string& view : arguments.surface.views) add("--view", std::filesystem::path(view).filename().string());
+  for (const std::string& view : arguments.surface.views)
+    add("--view", std::filesystem::path(view).filename().string());
   if (arguments.surface.view_factor != ViewFactor::automatic)
     add("--view-factor", name_of(arguments.surface.view_factor));
   if (arguments.surface.lighting) add("--lighting", name_of(*arguments.surface.lighting));
