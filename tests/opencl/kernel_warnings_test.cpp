@@ -23,10 +23,10 @@ using dermis::build_constant;
 namespace {
 
 /// Names that an #if of a kernel asks for, each 0 or 1.
-const std::set<std::string> all_flags = {"HAS_ALBEDO",   "HAS_DEPTH",   "HAS_MASK",     "HAS_MATERIAL",
-                                         "HAS_MATTE",    "HAS_NORMAL",  "HAS_STRETCH",  "HAS_THICKNESS",
-                                         "PIXEL_WIDTH",  "JITTER",      "SHEARED",      "LIT",
-                                         "TANGENT_DISC", "INTERLEAVED", "SUMS_WEIGHTS", "PROJECTED"};
+const std::set<std::string> all_flags = {"HAS_ALBEDO", "HAS_DEPTH",   "HAS_MASK",      "HAS_MATERIAL", "HAS_MATTE",
+                                         "HAS_NORMAL", "HAS_STRETCH", "HAS_THICKNESS", "PIXEL_WIDTH",  "JITTER",
+                                         "SHEARED",    "LIT",         "TANGENT_DISC",  "INTERLEAVED",  "SUMS_WEIGHTS",
+                                         "PROJECTED",  "WALK"};
 
 /// Other names that an #if asks for.
 const std::set<std::string> not_flags = {

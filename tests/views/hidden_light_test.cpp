@@ -58,8 +58,8 @@ std::vector<dermis::Material> random_walks(Random& random) {
   for (const int id : {1, 2}) {
     dermis::Rgb mfp_mm{}, albedo{};
     for (int c = 0; c < 3; ++c) {
-      mfp_mm[c] = random.uniform(0.3, 1.5);
-      albedo[c] = random.uniform(0.2, 0.9);
+      mfp_mm[c] = random.uniform(1, 4);
+      albedo[c] = random.uniform(0.3, 0.9);
     }
     materials.push_back({id, Profile::random_walk_mfp(mfp_mm, albedo)});
   }

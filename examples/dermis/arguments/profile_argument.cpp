@@ -164,8 +164,7 @@ constexpr std::array kinds = {
          "                             the same with a constant albedo\n"
          "  burley:LR/LG/LB,mfp,albedo=AR/AG/AB\n"
          "                             mean free path in mm and albedo\n"
-         "  burley:...,projected       light of views (--view) as Cycles samples it, which lets more through thin "
-         "parts\n"},
+         "  burley:...,projected       with --view: as Cycles samples it, which lets more through\n"},
     Kind{"walk:", parse_walk, false, "walk:R/G/B[,mfp],albedo=R/G/B",
          "  walk:RR/RG/RB,albedo=AR/AG/AB\n"
          "                             Cycles' random walk, by subsurface radius in mm and constant albedo\n"

@@ -122,7 +122,7 @@ bool print_different_bits(const exr::Picture& a, const exr::Picture& b, const Sh
 
 int run_compare(const CompareArguments& arguments) {
   if (arguments.b.empty() == arguments.truths.empty())
-    throw Error(ErrorCode::usage, "B", arguments.b.empty() ? "nothing to compare with" : "it with --truth",
+    throw Error(ErrorCode::usage, "b", arguments.b.empty() ? "nothing to compare with" : "it with --truth",
                 "a reference B, or --truth");
   if (arguments.truths.size() > 2)
     throw Error(ErrorCode::usage, "--truth", fmt::format("{} files", arguments.truths.size()), "one or two");
