@@ -143,8 +143,8 @@ TEST_CASE("a result is compared with path-traced pictures by its scattered light
   CHECK(within({noisy, other}, "0.12"));
   CHECK(has(run_well({"compare", out, "--truth", noisy, "--truth", other}), "noise of one truth 0.1"));
 
-  check_refused(run_program({"compare", out}), 2, {"B: got nothing to compare with", "--truth"});
-  check_refused(run_program({"compare", out, clean, "--truth", clean}), 2, {"B: got it with --truth"});
+  check_refused(run_program({"compare", out}), 2, {"b: got nothing to compare with", "--truth"});
+  check_refused(run_program({"compare", out, clean, "--truth", clean}), 2, {"b: got it with --truth"});
   // A picture of its beauty alone is compared by that.
   PictureCopy(clean).without("ViewLayer.Diff").write(folder / "beauty.exr");
   CHECK(has(run_well({"compare", out, "--truth", folder / "beauty.exr"}), "compared: the beauty"));
