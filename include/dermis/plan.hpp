@@ -292,7 +292,7 @@ class Plan {
   /// Throws Error(usage) if the method has no taps, or there is no such material or size.
   MaterialTaps taps_of(std::size_t material, double pixel_mm = 0) const;
 
-  /// Bytes of device memory that a run needs beyond the images of the caller.
+  /// Bytes of device memory that a run needs beyond the images of the caller, and beyond what their views take.
   std::size_t scratch_bytes(int width, int height) const;
 
   /// The same of the plan that these would make, without building its kernels. Throws as the constructor.

@@ -14,9 +14,8 @@ struct TruthArguments {
 };
 
 /// Prints the relative L2 error of each material and of all pixels (without material 0, if there are others), of the
-/// diffuse light without the albedo of the result, or of the beauty if a truth has no diffuse light. Returns that of all
-/// pixels. Throws Error(role_missing) for
-/// what a picture lacks, Error(input_unsupported) if the windows differ.
+/// diffuse light without the albedo of the result, or of the beauty if a truth has no diffuse light. Returns that of
+/// all pixels. Throws Error(role_missing) for what a picture lacks, Error(input_unsupported) if the windows differ.
 double print_truth_error(const TruthArguments& arguments);
 
 }  // namespace dermis::program

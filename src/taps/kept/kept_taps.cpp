@@ -51,7 +51,9 @@ void fields(auto& bytes, const TapsDesign& its) {
   bytes(its.model, its.rank, its.count, its.placement, its.non_negative, its.guide, its.tolerance, its.widest_px);
 }
 
-void fields(auto& bytes, const ProfileContent& its) { bytes(its.kinds, its.numbers, its.width_follows_albedo, its.is_projected); }
+void fields(auto& bytes, const ProfileContent& its) {
+  bytes(its.kinds, its.numbers, its.width_follows_albedo, its.is_projected);
+}
 
 namespace {
 
