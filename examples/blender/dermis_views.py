@@ -3,7 +3,7 @@
     blender -b shot.blend --python examples/blender/dermis_views.py -- --frame 12 -o shot
 
 renders shot.exr, as the scene's camera sees it, and shot_behind.exr, from the other side, with the passes that dermis
-reads. Made for Blender 2.93 to 4.x, with Cycles. Afterwards, with a scene unit of 10 mm:
+reads. Run with Blender 3.4 and Cycles; what 2.93 names otherwise is heeded. Afterwards, with a scene unit of 10 mm:
 
     dermis filter shot.exr -o shot_sss.exr --view shot_behind.exr --mm-per-unit 10 --material 1=skin-walk
 

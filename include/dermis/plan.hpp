@@ -276,13 +276,13 @@ class Plan {
 
   /// Filters the next frame of a sequence: tiles of which nothing within reach has changed since the last run with
   /// `reuse` take the light of that run, with the same bits. All tiles are computed if there was no such run, if it was
-  /// of another plan, size, camera or scale or failed, and always if the method is not separable or the device works
-  /// pixel by pixel. Bad pixels are counted, and refused, in tiles that are filtered.
+  /// of another plan, size, camera or scale or failed, and always if the frame has views, the method is not separable
+  /// or the device works pixel by pixel. Bad pixels are counted, and refused, in tiles that are filtered.
   Stats run(const Frame& frame, Reuse& reuse, const Progress& progress = {}) const;
 
   /// Puts the work of `run` on the caller's queue, which is of the plan's context and device, to start after the events
-  /// in `wait_for`. All images are buffers. Never blocks. Throws Error(usage) also if an image is in host memory, or if
-  /// bad pixels are to be errors.
+  /// in `wait_for`. All images are buffers. Never blocks. Throws Error(usage) also if an image is in host memory, if
+  /// bad pixels are to be errors, or if the frame has views.
   Event enqueue(const Frame& frame, cl_command_queue queue, std::span<const cl_event> wait_for = {}) const;
 
   /// The options with what a quality or a tolerance has made of them.

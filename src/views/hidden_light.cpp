@@ -95,7 +95,7 @@ params::ViewParams params_of(const View& view, double mm_per_unit) {
 
 ViewStats count(const ViewPixels& view) {
   ViewStats stats;
-  for (const params::ViewPixel& pixel : view.pixels) {
+  for (const params::ViewPixel& pixel : view) {
     if (pixel.material == 0) continue;
     ++(pixel.place == PLACE_SEEN ? stats.seen : stats.hidden);
     if (pixel.place == PLACE_CONTRADICTING) ++stats.contradicting;
@@ -177,8 +177,8 @@ ViewPixels HiddenLight::pixels_of(FrameRun& run, const View& view, double mm_per
   const Images images = images_of(view);
   const ImageBuffers bound(run.context(), view.width, view.height, images);
   const auto buffer = [&](Name name) { return bound.buffer(bound.has(name) ? name : light); };
-  ViewPixels result{view.width, std::vector<params::ViewPixel>(static_cast<std::size_t>(view.width) * view.height)};
-  const std::size_t bytes = result.pixels.size() * sizeof(params::ViewPixel);
+  ViewPixels result(static_cast<std::size_t>(view.width) * view.height);
+  const std::size_t bytes = result.size() * sizeof(params::ViewPixel);
   const cl::Buffer pixels(run.context(), CL_MEM_READ_WRITE, bytes);
   const params::ViewLayouts layouts{bound.layout(light), bound.layout(albedo), bound.layout(position),
                                     bound.layout(normal), bound.layout(material)};
@@ -189,7 +189,7 @@ ViewPixels HiddenLight::pixels_of(FrameRun& run, const View& view, double mm_per
                 pixels);
   run.launch_runs(kernel, view.width, view.height);
   run.queue().finish();
-  run.queue().enqueueReadBuffer(pixels, CL_TRUE, 0, bytes, result.pixels.data());
+  run.queue().enqueueReadBuffer(pixels, CL_TRUE, 0, bytes, result.data());
   return result;
 }
 

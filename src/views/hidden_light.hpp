@@ -23,7 +23,7 @@ class HiddenLight {
   HiddenLight& operator=(const HiddenLight&) = delete;
 
   /// Replaces the deferred light of a run, which has scattered over the visible surface, by
-  ///     M = (S W_seen + H) / min(W_seen + W_hidden, 1),   H = sum K E A and W = sum K A over the hidden samples,
+  ///     M = (S W + H) / min(W + V, 1),   W = min(W_seen, 1),   H = sum K E A and V = sum K A over the hidden samples,
   /// where hidden samples are in reach. Blocks. Throws Error(input_unsupported) for a view that shows another frame.
   std::vector<ViewStats> add_to(FrameRun& run, const Frame& frame) const;
 

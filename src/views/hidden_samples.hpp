@@ -9,10 +9,7 @@
 namespace dermis {
 
 /// The pixels of a view, row by row.
-struct ViewPixels {
-  int width = 0;
-  std::vector<params::ViewPixel> pixels;
-};
+using ViewPixels = std::vector<params::ViewPixel>;
 
 /// The hidden samples of all views, sorted for kernels/views/hidden_light.cl.
 struct HiddenSamples {

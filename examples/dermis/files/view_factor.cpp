@@ -13,7 +13,7 @@ namespace {
 using exr::Role;
 
 float factor_at(double cosine) {
-  // Normals of bumps and of rounded edges may lean away; the layer of highlights never takes more than that.
+  // Normals of bumps and of rounded edges may lean away from the camera: they count as seen edge-on.
   const double c = std::clamp(cosine, 0.05, 1.0);
   return static_cast<float>(1 - 0.5 * std::pow(1 - c, 5));
 }

@@ -12,9 +12,9 @@
 namespace dermis::program {
 
 /// The factor 1 - (1 - cos)^5 / 2 that the Principled BSDF of Blender puts into its diffuse light, as its layer of
-/// highlights takes the rest (Burley 2015, the retro-reflection without roughness).
+/// highlights takes the rest (Burley 2015: that of a Lambertian lobe, for the direction of view).
 enum class ViewFactor {
-  automatic,   ///< principled for pictures of Blender, if light from behind or a random walk has to match a path tracer
+  automatic,   ///< principled for pictures of Blender with views
   none,        ///< the light has no such factor
   principled,  ///< it is taken out
 };
