@@ -31,6 +31,7 @@ constexpr double least_relief = 0.01;
 constexpr double least_relief_over_noise = 10;
 constexpr std::size_t refined_starts = 3;
 constexpr std::size_t few = 2000;  // points that a fit is sought with before all refine it
+constexpr double known_well = 0.1;  // of the doubt that is allowed: all points need not refine that
 
 bool is_good(const std::optional<Fit>& fit, double half_px) {
   return fit && fit->share >= least_share && fit->noise_px <= most_noise_px && fit->off_px <= most_off * half_px;
@@ -73,8 +74,10 @@ FitModel every(const FitModel& model, std::size_t step) {
 /// Searches the projections that see points, with depths of a type or without.
 class Search {
  public:
-  explicit Search(const SeenPoints& points)
+  /// `limit`: how far off the focal length may be.
+  Search(const SeenPoints& points, double limit)
       : points_(points),
+        well_known_(known_well * limit / errors_allowed),
         all_(spread(points, points.size())),
         step_(std::max<std::size_t>(points.size() / few, 1)),
         few_(every(points, step_)) {}
@@ -101,9 +104,10 @@ class Search {
   }
 
  private:
-  /// The fit to all points that begins at one to a few.
+  /// The fit to all points that begins at one to a few, unless these do.
   std::optional<Fit> refined(const std::optional<Fit>& fit, const FitModel& model) const {
-    return fit && step_ > 1 ? fit_projection(points_, fit->projection, model) : fit;
+    if (!fit || step_ == 1 || (is_complete(fit) && fit->scale_doubt <= well_known_)) return fit;
+    return fit_projection(points_, fit->projection, model);
   }
 
   /// From linear solutions of all points; if that leads nowhere, of some that are chosen at random.
@@ -150,6 +154,7 @@ class Search {
   }
 
   const SeenPoints& points_;
+  double well_known_;  ///< of Fit::scale_doubt
   Rows all_;
   std::size_t step_;
   SeenPoints few_;
@@ -169,7 +174,7 @@ class Finding {
       return no(points_.size() == 0 ? "no pixel that shows a surface"
                                     : "only " + std::to_string(points_.size()) + " pixels that are not background");
     }
-    const Search search(points_);
+    const Search search(points_, limit_);
     free_ = search.free();
     if (is_good(free_) && is_known(*free_) && !may_be_parallel(search.parallel(), *free_)) {
       is_parallel_ = false;
@@ -235,11 +240,11 @@ class Finding {
     for (const DepthType& type : types_to_try()) {
       const std::optional<Fit> fit = search.with_depth(model_with(points_, type), free_);
       if (!is_good(fit) || !is_known(*fit) || !agrees(*fit) || is_ambiguous(*fit)) continue;
-      if (!best || fit->noise_px < best->noise_px) {
+      // Through a long lens one type hardly differs from another: the first one stands where none is clearly better.
+      if (!best || as_good * fit->noise_px < best->noise_px) {
         best = fit;
         type_ = type;
       }
-      if (is_good(free_) && fit->off_px <= as_good * free_->off_px) break;
     }
     if (best) fit_ = best;
   }

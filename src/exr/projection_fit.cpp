@@ -15,7 +15,7 @@ namespace {
 constexpr std::size_t fewest_points = 16;
 constexpr int most_steps = 60;
 constexpr double tukey_width = 4.685;  // standard deviations: 95 % as good as least squares where all points are true
-constexpr double least_step = 1e-3;    // standard errors, and of the noise: smaller steps change nothing
+constexpr double least_step = 0.03;    // standard errors, and of the noise: smaller steps change nothing
 
 // The parameters of a projection, by how they change it.
 enum Parameter { turn_x, turn_y, turn_z, middle_x, middle_y, log_scale_x, log_scale_y, near, slant_x, slant_y };
@@ -178,16 +178,20 @@ class Fitting {
     noise_px_ = std::max({excess_px_, 0.3 * rounding, 1e-7});
   }
 
-  double weight_of(double squared) const {
+  static double weight_of(double squared) {
     const double u = squared / (tukey_width * tukey_width);
     return u < 1 ? (1 - u) * (1 - u) : 0;
+  }
+
+  static double cost_of(double squared) {
+    const double u = squared / (tukey_width * tukey_width);
+    return u < 1 ? 1 - (1 - u) * (1 - u) * (1 - u) : 1;
   }
 
   double cost() const {
     double sum = 0;
     for (std::size_t i = 0; i < points_.size(); ++i) {
-      const double u = errors_of(i, false).value.squaredNorm() / variance(i) / (tukey_width * tukey_width);
-      sum += u < 1 ? 1 - (1 - u) * (1 - u) * (1 - u) : 1;
+      sum += cost_of(errors_of(i, false).value.squaredNorm() / variance(i));
     }
     return sum;
   }
@@ -196,6 +200,7 @@ class Fitting {
     Matrix matrix = Matrix::Zero();
     Vector gradient = Vector::Zero();
     std::array<Vector, patches_per_side * patches_per_side> by_patch;
+    double cost = 0;
     double squares = 0;
     double weights = 0;
   };
@@ -206,14 +211,16 @@ class Fitting {
     for (std::size_t i = 0; i < points_.size(); ++i) {
       const Errors errors = errors_of(i, true);
       const double at = variance(i);
-      const double weight = weight_of(errors.value.squaredNorm() / at);
+      const double squared = errors.value.squaredNorm() / at;
+      const double weight = weight_of(squared);
+      out.cost += cost_of(squared);
       if (weight == 0) continue;
       const Vector gradient = (weight / at) * (errors.slope.transpose() * errors.value);
       // Eigen's product of matrices of any size would take most of the time.
       out.matrix += (weight / at) * errors.slope.transpose().lazyProduct(errors.slope);
       out.gradient += gradient;
       out.by_patch[static_cast<std::size_t>(points_.patch[i])] += gradient;
-      out.squares += weight * errors.value.squaredNorm() / at;
+      out.squares += weight * squared;
       out.weights += weight;
     }
     for (int k = 0; k < parameters; ++k) {
@@ -230,7 +237,6 @@ class Fitting {
   /// A step of Levenberg and Marquardt; false if none that matters makes the fit better.
   bool improve() {
     const Normal all = normal();
-    const double before = cost();
     const Projection from = now_;
     // Columns of one length, as the parameters have many units.
     const Vector unit = all.matrix.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
@@ -240,7 +246,7 @@ class Fitting {
       const Vector step = -(unit.asDiagonal() * damped.ldlt().solve(unit.asDiagonal() * all.gradient));
       now_ = changed(from, step);
       const double after = step.allFinite() ? cost() : HUGE_VAL;
-      if (after < before) {
+      if (after < all.cost) {
         damping_ = std::max(damping_ / 10, 1e-13);
         return step.dot(all.matrix * step) > least_step * least_step;
       }
