@@ -6,13 +6,18 @@
 // A sample is a patch: its light does not come from one point. See METHODS.md.
 #define PATCH 0.08f
 
-// Cells of one material within reach of some pixels: those listed, or all of them if there are too many.
-#define MOST_LISTED 256
+// Samples of one level in one cell, which some pixels gather from.
 typedef struct {
-  int list[MOST_LISTED];
+  int cell, level;
+} Run;
+
+// The runs that a region of pixels gathers from: those listed, or all of the material if there are too many.
+#define MOST_LISTED 1024
+typedef struct {
+  Run list[MOST_LISTED];
   int count;
   int is_listed;
-} Cells;
+} Runs;
 
 // Writes 1 where light is finite and NaN elsewhere, so that weights are summed over the pixels that give light. A
 // work-item has a run of `columns` pixels of a row.
@@ -52,24 +57,34 @@ static inline void include_points(Box* box, const struct FrameParams* f, const P
   }
 }
 
-static inline void list_cells(Cells* cells, const Box* box, global const struct HiddenMaterial* its,
-                              global const struct HiddenCell* all) {
-  cells->count = 0;
-  cells->is_listed = 1;
+// Lists what of the cells of a material any point of a box may gather from.
+static inline void list_runs(Runs* runs, const Box* box, global const struct HiddenMaterial* its,
+                             global const struct HiddenCell* all) {
+  runs->count = 0;
+  runs->is_listed = 1;
   for (int c = 0; c < its->cells; ++c) {
     global const struct HiddenCell* cell = all + its->first_cell + c;
-    float square = 0.0f;
+    float nearest = 0.0f, farthest = 0.0f;  // squares
     for (int i = 0; i < 3; ++i) {
-      const float gap = fmax(fmax(cell->low[i] - box->high[i], box->low[i] - cell->high[i]), 0.0f);
-      square = fma(gap, gap, square);
+      const float above = cell->high[i] - box->low[i];
+      const float below = box->high[i] - cell->low[i];
+      const float gap = fmax(fmax(-above, -below), 0.0f);
+      const float span = fmax(above, below);
+      nearest = fma(gap, gap, nearest);
+      farthest = fma(span, span, farthest);
     }
-    if (square >= its->reach_mm * its->reach_mm) continue;
-    if (cells->count == MOST_LISTED) {
-      cells->count = its->cells;
-      cells->is_listed = 0;
-      return;
+    for (int level = 0; level < HIDDEN_LEVELS; ++level) {
+      const float from = level > 0 ? its->near_mm[level - 1] : 0.0f;
+      const float to = level < HIDDEN_LEVELS - 1 ? its->far_mm[level] : its->reach_mm;
+      if (nearest >= to * to || farthest < 0.999f * from * from) continue;
+      if (runs->count == MOST_LISTED) {
+        runs->count = HIDDEN_LEVELS * its->cells;
+        runs->is_listed = 0;
+        return;
+      }
+      runs->list[runs->count].cell = c;
+      runs->list[runs->count++].level = level;
     }
-    cells->list[cells->count++] = c;
   }
 }
 
@@ -286,9 +301,9 @@ kernel void hidden_light(struct FrameParams f, struct FrameLayouts layouts, glob
       }
     }
     if (!(box.low[0] <= box.high[0])) continue;
-    Cells cells;
-    list_cells(&cells, &box, its, all_cells);
-    if (cells.count == 0) continue;
+    Runs runs;
+    list_runs(&runs, &box, its, all_cells);
+    if (runs.count == 0) continue;
     for (int y = y_begin; y < y_end; ++y) {
       const InputRows inputs = input_rows(&f, &in, y);
       for (int x = x_begin; x < x_end; x += V) {
@@ -322,11 +337,11 @@ kernel void hidden_light(struct FrameParams f, struct FrameLayouts layouts, glob
 #if WALK
         sum.bent = broadcast_rgb((vfloat)(0.0f));
 #endif
-        for (int i = 0; i < cells.count; ++i) {
-          global const struct HiddenCell* cell = all_cells + its->first_cell + (cells.is_listed ? cells.list[i] : i);
-          for (int level = 0; level < HIDDEN_LEVELS; ++level) {
-            add_samples(&sum, &profile, its, &target, samples + cell->first[level], cell->samples[level], level);
-          }
+        for (int i = 0; i < runs.count; ++i) {
+          const int c = runs.is_listed ? runs.list[i].cell : i / HIDDEN_LEVELS;
+          const int level = runs.is_listed ? runs.list[i].level : i % HIDDEN_LEVELS;
+          global const struct HiddenCell* cell = all_cells + its->first_cell + c;
+          add_samples(&sum, &profile, its, &target, samples + cell->first[level], cell->samples[level], level);
         }
         const vrgb squared = product(reciprocal, reciprocal);
         const vrgb light = product(sum.light, squared);
