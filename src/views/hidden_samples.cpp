@@ -12,13 +12,16 @@ namespace dermis {
 
 namespace {
 
-/// The sides of joined samples, and the distances from which on they count instead of finer ones, as shares of the
-/// reach; from half of such a distance on they count in part.
-constexpr std::array<double, HIDDEN_LEVELS - 1> joined_side = {1.0 / 20, 1.0 / 10};
+/// The side of a cell, as a share of the reach.
+constexpr double cell_side = 1.0 / 5;
+/// So many cubes along an edge of a cell have their samples joined, on each level but the first; each level is made of
+/// the last one. A projected profile is much steeper where it looks along a plane: 2 % off with half the side, 5 % with
+/// the whole.
+constexpr std::array<int, HIDDEN_LEVELS - 1> joined_cubes = {4, 2};
+constexpr std::array<int, HIDDEN_LEVELS - 1> projected_cubes = {8, 4};
+/// The distances from which on joined samples count instead of finer ones, as shares of the reach; from half of such a
+/// distance on they count in part.
 constexpr std::array<double, HIDDEN_LEVELS - 1> joined_from = {4.0 / 20, 6.0 / 10};
-/// A projected profile is much steeper where it looks along a plane: 2 % off with half the side, 5 % with the whole.
-constexpr double projected_side = 0.5;
-constexpr double cell_side = 4.0 / 20;
 
 /// A pixel is split until its parts are no larger than this share of the reach, but into 4 x 4 at most.
 constexpr double largest_part = 1.0 / 80;
@@ -157,30 +160,38 @@ class PatchGrid {
   std::unordered_map<Cube, std::vector<std::size_t>, CubeHash> cubes_;
 };
 
-/// A sample before it is sorted into cells.
+/// A patch of hidden surface, with the part of its area that it stands for.
+struct HiddenPatch {
+  const Patch* patch;
+  double area_mm2;
+};
+
+/// Hidden surface that stands for an area. The normal of joined samples is their mean, which is shorter than 1.
 struct Sample {
   Vector at, normal, light;
   double area_mm2;
 };
 
-void split(const Patch& patch, double area_mm2, double reach_mm, std::vector<Sample>& samples) {
+void split(const HiddenPatch& its, double reach_mm, std::vector<Sample>& samples) {
+  const Patch& patch = *its.patch;
   const double side = std::sqrt(patch.area_mm2);
   const int parts = std::clamp(static_cast<int>(std::ceil(side / (largest_part * reach_mm))), 1, most_parts);
   for (int j = 0; j < parts; ++j) {
     for (int i = 0; i < parts; ++i) {
       const auto offset = [&](int k) { return (k + 0.5) / parts - 0.5; };
       const Vector at = sum(sum(patch.at, patch.along_x, offset(i)), patch.along_y, offset(j));
-      samples.push_back({at, patch.normal, patch.light, area_mm2 / (parts * parts)});
+      samples.push_back({at, patch.normal, patch.light, its.area_mm2 / (parts * parts)});
     }
   }
 }
 
 params::HiddenSample params_of(const Sample& sample) {
   const auto f = [](double value) { return static_cast<float>(value); };
+  const double normal = length(sample.normal);
   return {{f(sample.at[0]), f(sample.at[1]), f(sample.at[2])},
           f(sample.area_mm2),
           {f(sample.light[0]), f(sample.light[1]), f(sample.light[2])},
-          {f(sample.normal[0]), f(sample.normal[1]), f(sample.normal[2])},
+          {f(sample.normal[0] / normal), f(sample.normal[1] / normal), f(sample.normal[2] / normal)},
           {}};
 }
 
@@ -193,20 +204,25 @@ int side_of(const Vector& normal) {
   return 2 * axis + (normal[axis] > 0 ? 1 : 0);
 }
 
-/// Joins the samples of each small cube and side to one, at their mean place with their mean light and normal.
-std::vector<Sample> joined(std::span<const Sample> samples, double side_mm) {
-  std::vector<std::pair<std::array<std::int32_t, 4>, const Sample*>> sorted;
-  for (const Sample& sample : samples) {
-    const Cube cube = cube_of(sample.at, side_mm);
-    sorted.push_back({{cube[0], cube[1], cube[2], side_of(sample.normal)}, &sample});
+/// Joins the samples of each small cube and side to one, at their mean place with their mean light and normal. The cell
+/// has so many small cubes along an edge; what sticks out of it, as part of a pixel, counts to those at its faces.
+std::vector<Sample> joined(std::span<const Sample> samples, const Cube& cell, double cell_mm, int cubes) {
+  std::vector<std::uint64_t> sorted;  // by cube and side, which are above the number of the sample
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    std::uint64_t key = 0;
+    for (int k = 0; k < 3; ++k) {
+      const double within = std::floor((samples[i].at[k] / cell_mm - cell[k]) * cubes);
+      key = key * cubes + static_cast<std::uint64_t>(std::clamp(within, 0.0, cubes - 1.0));
+    }
+    sorted.push_back((key * 6 + side_of(samples[i].normal)) << 32U | i);
   }
-  std::stable_sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::sort(sorted.begin(), sorted.end());
   std::vector<Sample> result;
   for (std::size_t i = 0; i < sorted.size();) {
     Sample all{};
-    const auto key = sorted[i].first;
-    for (; i < sorted.size() && sorted[i].first == key; ++i) {
-      const Sample& one = *sorted[i].second;
+    const std::uint64_t key = sorted[i] >> 32U;
+    for (; i < sorted.size() && sorted[i] >> 32U == key; ++i) {
+      const Sample& one = samples[sorted[i] & 0xffffffffU];
       all.at = sum(all.at, one.at, one.area_mm2);
       all.light = sum(all.light, one.light, one.area_mm2);
       all.normal = sum(all.normal, one.normal, one.area_mm2);
@@ -215,48 +231,50 @@ std::vector<Sample> joined(std::span<const Sample> samples, double side_mm) {
     for (int k = 0; k < 3; ++k) {
       all.at[k] /= all.area_mm2;
       all.light[k] /= all.area_mm2;
+      all.normal[k] /= all.area_mm2;
     }
-    const double normal = length(all.normal);
-    for (double& part : all.normal) part /= normal;
     result.push_back(all);
   }
   return result;
 }
 
+/// Appends a cell, which has all its samples on each level.
+void append_cell(std::vector<Sample> samples, const Cube& cube, double cell_mm,
+                 const std::array<int, HIDDEN_LEVELS - 1>& cubes, HiddenSamples& to) {
+  params::HiddenCell cell{};
+  for (int k = 0; k < 3; ++k) {
+    const auto [low, high] = std::minmax_element(samples.begin(), samples.end(),
+                                                 [&](const auto& a, const auto& b) { return a.at[k] < b.at[k]; });
+    cell.low[k] = static_cast<float>(low->at[k]);
+    cell.high[k] = static_cast<float>(high->at[k]);
+  }
+  for (std::size_t level = 0; level < HIDDEN_LEVELS; ++level) {
+    if (level > 0) samples = joined(samples, cube, cell_mm, cubes[level - 1]);
+    cell.first[level] = static_cast<int>(to.samples.size());
+    cell.samples[level] = static_cast<int>(samples.size());
+    for (const Sample& sample : samples) to.samples.push_back(params_of(sample));
+  }
+  to.cells.push_back(cell);
+}
+
 /// Appends the cells of one material.
-void append_cells(std::vector<Sample>& samples, params::HiddenMaterial material, HiddenSamples& to) {
+void append_cells(std::span<const HiddenPatch> patches, params::HiddenMaterial material, HiddenSamples& to) {
   const double reach_mm = static_cast<double>(material.reach_mm);
   material.first_cell = static_cast<int>(to.cells.size());
   for (std::size_t level = 0; level < joined_from.size(); ++level) {
     material.near_mm[level] = static_cast<float>(joined_from[level] / 2 * reach_mm);
     material.far_mm[level] = static_cast<float>(joined_from[level] * reach_mm);
   }
-  const double larger = material.crossing == CROSSING_PROJECTED ? projected_side : 1;
-  const double side_mm = cell_side * reach_mm;
-  std::stable_sort(samples.begin(), samples.end(),
-                   [&](const Sample& a, const Sample& b) { return cube_of(a.at, side_mm) < cube_of(b.at, side_mm); });
-  for (std::size_t first = 0; first < samples.size();) {
-    std::size_t last = first;
-    while (last < samples.size() && cube_of(samples[last].at, side_mm) == cube_of(samples[first].at, side_mm)) ++last;
-    const std::span<const Sample> its(samples.data() + first, last - first);
-    params::HiddenCell cell{};
-    for (int k = 0; k < 3; ++k) {
-      const auto [low, high] =
-          std::minmax_element(its.begin(), its.end(), [&](const auto& a, const auto& b) { return a.at[k] < b.at[k]; });
-      cell.low[k] = static_cast<float>(low->at[k]);
-      cell.high[k] = static_cast<float>(high->at[k]);
-    }
-    const auto append = [&to](std::span<const Sample> some, int& begin, int& count) {
-      begin = static_cast<int>(to.samples.size());
-      count = static_cast<int>(some.size());
-      for (const Sample& sample : some) to.samples.push_back(params_of(sample));
-    };
-    append(its, cell.first[0], cell.samples[0]);
-    for (std::size_t level = 0; level < joined_side.size(); ++level) {
-      append(joined(its, joined_side[level] * larger * reach_mm), cell.first[level + 1], cell.samples[level + 1]);
-    }
-    to.cells.push_back(cell);
-    first = last;
+  const double cell_mm = cell_side * reach_mm;
+  std::vector<std::pair<Cube, const HiddenPatch*>> sorted;
+  for (const HiddenPatch& patch : patches) sorted.emplace_back(cube_of(patch.patch->at, cell_mm), &patch);
+  std::sort(sorted.begin(), sorted.end());  // patches of a cube as they are in the list
+  const auto& cubes = material.crossing == CROSSING_PROJECTED ? projected_cubes : joined_cubes;
+  for (auto its = sorted.begin(); its != sorted.end();) {
+    const Cube cube = its->first;
+    std::vector<Sample> samples;
+    for (; its != sorted.end() && its->first == cube; ++its) split(*its->second, reach_mm, samples);
+    append_cell(std::move(samples), cube, cell_mm, cubes, to);
   }
   material.cells = static_cast<int>(to.cells.size()) - material.first_cell;
   to.materials.push_back(material);
@@ -271,7 +289,7 @@ HiddenSamples hidden_samples(std::span<const ViewPixels> views, std::span<const 
   if (views.size() > 1) {
     for (const std::vector<Patch>& its : patches) grids.emplace_back(its);
   }
-  std::vector<std::vector<Sample>> by_material(profiles.size());
+  std::vector<std::vector<HiddenPatch>> by_material(profiles.size());
   for (std::size_t v = 0; v < patches.size(); ++v) {
     for (const Patch& patch : patches[v]) {
       if (!patch.is_hidden) continue;
@@ -279,7 +297,7 @@ HiddenSamples hidden_samples(std::span<const ViewPixels> views, std::span<const 
       for (std::size_t other = 0; other < grids.size(); ++other) {
         if (other != v) density += grids[other].density_at(patch);
       }
-      split(patch, 1 / density, static_cast<double>(profiles[patch.material].reach_mm), by_material[patch.material]);
+      by_material[patch.material].push_back({&patch, 1 / density});
     }
   }
   HiddenSamples result;
