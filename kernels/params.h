@@ -146,11 +146,18 @@ struct HiddenCell {
 // Gains of a slab over the profile, at so many thicknesses.
 #define SLAB_NODES 32
 
+// At what squared distances the samples of a level count, mm^2: not up to `from` nor beyond `to`, and in part where
+// slope * distance + offset is below 1, of `rise` from the finer level and of `fall` to the next one.
+struct HiddenLevel {
+  float from_mm2, to_mm2;
+  float rise_slope, rise_offset;
+  float fall_slope, fall_offset;
+};
+
 struct HiddenMaterial {
   int first_cell, cells;
   float reach_mm;
-  // From a level to the next one: up to the one distance all light is of the first, from the other on of the second.
-  float near_mm[HIDDEN_LEVELS - 1], far_mm[HIDDEN_LEVELS - 1];
+  struct HiddenLevel levels[HIDDEN_LEVELS];
   int crossing;
   float slab_step_mm;              // of walks: from one thickness of slab_gain to the next, the first of which is 0
   float bend_mm[3];                // how much a curvature of 1/mm adds

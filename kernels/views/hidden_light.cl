@@ -6,19 +6,6 @@
 // A sample is a patch: its light does not come from one point. See METHODS.md.
 #define PATCH 0.08f
 
-// Samples of one level in one cell, which some pixels gather from.
-typedef struct {
-  int cell, level;
-} Run;
-
-// The runs that a region of pixels gathers from: those listed, or all of the material if there are too many.
-#define MOST_LISTED 1024
-typedef struct {
-  Run list[MOST_LISTED];
-  int count;
-  int is_listed;
-} Runs;
-
 // Writes 1 where light is finite and NaN elsewhere, so that weights are summed over the pixels that give light. A
 // work-item has a run of `columns` pixels of a row.
 kernel void unit_light(struct FrameParams f, struct FrameLayouts layouts, global const uchar* light,
@@ -37,15 +24,27 @@ kernel void unit_light(struct FrameParams f, struct FrameLayouts layouts, global
   }
 }
 
-// A region of the frame: the box around the points of one material.
+// V vectors, mm, or of unit length.
+typedef struct {
+  vfloat x, y, z;
+} Vectors;
+
+static inline vfloat dot_of(const Vectors* a, float x, float y, float z) { return a->x * x + a->y * y + a->z * z; }
+
+static inline Vectors points_of(const struct FrameParams* f, vfloat z, int x, int y) {
+  const Vectors points = {
+      (convert_vfloat(x + int_lane_numbers()) + 0.5f - f->center_x) * fma(z, f->slope_x, f->mm_per_px_x),
+      ((float)y + 0.5f - f->center_y) * fma(z, f->slope_y, f->mm_per_px_y), z};
+  return points;
+}
+
+// The box around some pixels' points of one material.
 typedef struct {
   float low[3], high[3];
 } Box;
 
-static inline void include_points(Box* box, const struct FrameParams* f, const Points* p, vint mine, int x, int y) {
-  const vfloat at[3] = {
-      (convert_vfloat(x + int_lane_numbers()) + 0.5f - f->center_x) * fma(p->z, f->slope_x, f->mm_per_px_x),
-      ((float)y + 0.5f - f->center_y) * fma(p->z, f->slope_y, f->mm_per_px_y), p->z};
+static inline void include_points(Box* box, const Vectors* points, vint mine) {
+  const vfloat at[3] = {points->x, points->y, points->z};
   for (int i = 0; i < 3; ++i) {
 #define INCLUDE_LANE(lane)                                \
   if (LANE(mine, lane)) {                                 \
@@ -57,34 +56,43 @@ static inline void include_points(Box* box, const struct FrameParams* f, const P
   }
 }
 
-// Lists what of the cells of a material any point of a box may gather from.
+// Whether samples of a level in a cell may count for points in a box. The squares are those of the nearest and of the
+// farthest points, rounded as those of pairs in between are, which they bound therefore.
+static inline int may_count(const Box* box, global const struct HiddenCell* cell,
+                            global const struct HiddenLevel* level) {
+  float nearest = 0.0f, farthest = 0.0f;
+  for (int i = 2; i >= 0; --i) {
+    const float above = cell->high[i] - box->low[i];
+    const float below = box->high[i] - cell->low[i];
+    const float gap = fmax(fmax(-above, -below), 0.0f);
+    const float span = fmax(above, below);
+    nearest = fma(gap, gap, nearest);
+    farthest = fma(span, span, farthest);
+  }
+  return nearest < level->to_mm2 && farthest > level->from_mm2;
+}
+
+// The samples of one level in one cell, by number: those that a region of pixels may gather from, or all of a material
+// if there are too many.
+#define MOST_LISTED 1024
+typedef struct {
+  int list[MOST_LISTED];
+  int count;
+  int is_listed;
+} Runs;
+
 static inline void list_runs(Runs* runs, const Box* box, global const struct HiddenMaterial* its,
-                             global const struct HiddenCell* all) {
+                             global const struct HiddenCell* cells) {
   runs->count = 0;
   runs->is_listed = 1;
-  for (int c = 0; c < its->cells; ++c) {
-    global const struct HiddenCell* cell = all + its->first_cell + c;
-    float nearest = 0.0f, farthest = 0.0f;  // squares
-    for (int i = 0; i < 3; ++i) {
-      const float above = cell->high[i] - box->low[i];
-      const float below = box->high[i] - cell->low[i];
-      const float gap = fmax(fmax(-above, -below), 0.0f);
-      const float span = fmax(above, below);
-      nearest = fma(gap, gap, nearest);
-      farthest = fma(span, span, farthest);
+  for (int run = 0; run < HIDDEN_LEVELS * its->cells; ++run) {
+    if (!may_count(box, cells + run / HIDDEN_LEVELS, its->levels + run % HIDDEN_LEVELS)) continue;
+    if (runs->count == MOST_LISTED) {
+      runs->count = HIDDEN_LEVELS * its->cells;
+      runs->is_listed = 0;
+      return;
     }
-    for (int level = 0; level < HIDDEN_LEVELS; ++level) {
-      const float from = level > 0 ? its->near_mm[level - 1] : 0.0f;
-      const float to = level < HIDDEN_LEVELS - 1 ? its->far_mm[level] : its->reach_mm;
-      if (nearest >= to * to || farthest < 0.999f * from * from) continue;
-      if (runs->count == MOST_LISTED) {
-        runs->count = HIDDEN_LEVELS * its->cells;
-        runs->is_listed = 0;
-        return;
-      }
-      runs->list[runs->count].cell = c;
-      runs->list[runs->count++].level = level;
-    }
+    runs->list[runs->count++] = run;
   }
 }
 
@@ -95,13 +103,6 @@ typedef struct {
   vrgb bent;  // what curvature adds to the light
 #endif
 } Sum;
-
-// V vectors, mm, or of unit length.
-typedef struct {
-  vfloat x, y, z;
-} Vectors;
-
-static inline vfloat dot_of(const Vectors* a, float x, float y, float z) { return a->x * x + a->y * y + a->z * z; }
 
 // The pixels that light is gathered for.
 typedef struct {
@@ -222,44 +223,45 @@ static inline void add_walked(Sum* sum, global const struct HiddenMaterial* its,
 }
 #endif
 
-// 0 up to the distance at which all light is of one level, 1 from that on at which it is of the next.
-static inline vfloat rise(vfloat r, global const struct HiddenMaterial* its, int level) {
-  const float per_mm = 1.0f / (its->far_mm[level] - its->near_mm[level]);
-  const vfloat t = clamp((r - its->near_mm[level]) * per_mm, (vfloat)(0.0f), (vfloat)(1.0f));
+// The share of the light from a squared distance that is of a level.
+static inline vfloat share_of(global const struct HiddenLevel* level, vfloat r_squared) {
+  const vfloat rise = fma(r_squared, (vfloat)(level->rise_slope), (vfloat)(level->rise_offset));
+  const vfloat fall = fma(r_squared, (vfloat)(level->fall_slope), (vfloat)(level->fall_offset));
+  const vfloat t = clamp(lower(rise, fall), (vfloat)(0.0f), (vfloat)(1.0f));
   return t * t * (3.0f - 2.0f * t);
 }
 
-// Adds the samples of a level, as far as light from their distance is of it.
-SHARED void add_samples(Sum* sum, const Profile* profile, global const struct HiddenMaterial* its, const Target* target,
-                        global const struct HiddenSample* samples, int count, int level) {
+// Adds some samples of a level.
+SHARED void add_samples(Sum* to, const Profile* profile, global const struct HiddenMaterial* its, const Target* target,
+                        global const struct HiddenSample* samples, int count, global const struct HiddenLevel* level) {
+  Sum sum = *to;
+  const Vectors at = target->at;
+  const float from = level->from_mm2, end = level->to_mm2;
   for (int i = 0; i < count; ++i) {
     global const struct HiddenSample* sample = samples + i;
-    const Vectors way = {sample->position[0] - target->at.x, sample->position[1] - target->at.y,
-                         sample->position[2] - target->at.z};
+    const Vectors way = {sample->position[0] - at.x, sample->position[1] - at.y, sample->position[2] - at.z};
     const vfloat r_squared = fma(way.x, way.x, fma(way.y, way.y, way.z * way.z));
-    const vfloat r = sqrt(r_squared);
-    vfloat share = (vfloat)(1.0f);
-    if (level > 0) share = rise(r, its, level - 1);
-    if (level < HIDDEN_LEVELS - 1) share -= rise(r, its, level);
-    const vint counts = AS_MASK(share > 0.0f) & AS_MASK(r_squared < its->reach_mm * its->reach_mm);
+    const vint counts = AS_MASK(r_squared > from) & AS_MASK(r_squared < end);
     if (!any_bit(counts)) continue;
-    const vrgb density = radial_at(profile, fma((vfloat)(PATCH), (vfloat)(sample->area_mm2), r_squared));
-    vfloat area = select_or_zero(counts, share * sample->area_mm2);
+    const vfloat softened = fma((vfloat)(PATCH), (vfloat)(sample->area_mm2), r_squared);
+    const vrgb density = radial_at(profile, softened);
+    vfloat area = select_or_zero(counts, share_of(level, r_squared) * sample->area_mm2);
 #if PROJECTED
     if (its->crossing == CROSSING_PROJECTED) area *= projection_factor(target, sample, way, r_squared);
 #endif
     const vrgb weight = times(density, area);
-    sum->weight = sum_rgb(sum->weight, weight);
+    sum.weight = sum_rgb(sum.weight, weight);
 #if WALK
     if (its->crossing == CROSSING_WALK) {
-      add_walked(sum, its, target, sample, way, fma((vfloat)(PATCH), (vfloat)(sample->area_mm2), r_squared), weight);
+      add_walked(&sum, its, target, sample, way, softened, weight);
       continue;
     }
 #endif
-    sum->light.r = fma(weight.r, (vfloat)(sample->light[0]), sum->light.r);
-    sum->light.g = fma(weight.g, (vfloat)(sample->light[1]), sum->light.g);
-    sum->light.b = fma(weight.b, (vfloat)(sample->light[2]), sum->light.b);
+    sum.light.r = fma(weight.r, (vfloat)(sample->light[0]), sum.light.r);
+    sum.light.g = fma(weight.g, (vfloat)(sample->light[1]), sum.light.g);
+    sum.light.b = fma(weight.b, (vfloat)(sample->light[2]), sum.light.b);
   }
+  *to = sum;
 }
 
 // The part of the whole that the light has which enters where the camera looks, and the sum of all.
@@ -290,19 +292,21 @@ kernel void hidden_light(struct FrameParams f, struct FrameLayouts layouts, glob
   for (int m = 0; m < MATERIALS; ++m) {
     global const struct HiddenMaterial* its = hidden + m;
     if (its->cells == 0) continue;
-    Box box = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+    const Box empty = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+    Box box = empty;
     for (int y = y_begin; y < y_end; ++y) {
       const InputRows inputs = input_rows(&f, &in, y);
       for (int x = x_begin; x < x_end; x += V) {
         const vint mine = AS_MASK(load_bytes(inputs.material_ids + x) == m + 1);
         if (!any_bit(mine)) continue;
-        const Points p = points_at(&f, read_values(inputs.depth, x) * f.mm_per_unit, x, y);
-        include_points(&box, &f, &p, mine, x, y);
+        const Vectors points = points_of(&f, read_values(inputs.depth, x) * f.mm_per_unit, x, y);
+        include_points(&box, &points, mine);
       }
     }
     if (!(box.low[0] <= box.high[0])) continue;
     Runs runs;
-    list_runs(&runs, &box, its, all_cells);
+    global const struct HiddenCell* cells = all_cells + its->first_cell;
+    list_runs(&runs, &box, its, cells);
     if (runs.count == 0) continue;
     for (int y = y_begin; y < y_end; ++y) {
       const InputRows inputs = input_rows(&f, &in, y);
@@ -311,10 +315,9 @@ kernel void hidden_light(struct FrameParams f, struct FrameLayouts layouts, glob
         if (!any_bit(mine)) continue;
         const vfloat z = select((vfloat)(1.0f), read_values(inputs.depth, x) * f.mm_per_unit, mine);
         Target target;
-        const Vectors place = {
-            (convert_vfloat(x + int_lane_numbers()) + 0.5f - f.center_x) * fma(z, f.slope_x, f.mm_per_px_x),
-            ((float)y + 0.5f - f.center_y) * fma(z, f.slope_y, f.mm_per_px_y), z};
-        target.at = place;
+        target.at = points_of(&f, z, x, y);
+        Box its_box = empty;
+        include_points(&its_box, &target.at, mine);
         target.normal = normal_at(&f, &inputs, depth, &layouts.depth, mine, m, x, y);
 #if PROJECTED
         make_frame(&target);
@@ -338,10 +341,11 @@ kernel void hidden_light(struct FrameParams f, struct FrameLayouts layouts, glob
         sum.bent = broadcast_rgb((vfloat)(0.0f));
 #endif
         for (int i = 0; i < runs.count; ++i) {
-          const int c = runs.is_listed ? runs.list[i].cell : i / HIDDEN_LEVELS;
-          const int level = runs.is_listed ? runs.list[i].level : i % HIDDEN_LEVELS;
-          global const struct HiddenCell* cell = all_cells + its->first_cell + c;
-          add_samples(&sum, &profile, its, &target, samples + cell->first[level], cell->samples[level], level);
+          const int run = runs.is_listed ? runs.list[i] : i;
+          const int l = run % HIDDEN_LEVELS;
+          global const struct HiddenCell* cell = cells + run / HIDDEN_LEVELS;
+          if (!may_count(&its_box, cell, its->levels + l)) continue;
+          add_samples(&sum, &profile, its, &target, samples + cell->first[l], cell->samples[l], its->levels + l);
         }
         const vrgb squared = product(reciprocal, reciprocal);
         const vrgb light = product(sum.light, squared);

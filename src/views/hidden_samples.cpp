@@ -257,14 +257,31 @@ void append_cell(std::vector<Sample> samples, const Cube& cube, double cell_mm,
   to.cells.push_back(cell);
 }
 
+/// Lets each level pass into the next one between half of a distance and the whole of it.
+void set_levels(params::HiddenMaterial& material) {
+  const double reach_mm = static_cast<double>(material.reach_mm);
+  const auto f = [](double value) { return static_cast<float>(value); };
+  for (params::HiddenLevel& level : material.levels) level = {-1, f(reach_mm * reach_mm), 0, 1, 0, 1};
+  for (std::size_t level = 0; level < joined_from.size(); ++level) {
+    const double far_mm2 = std::pow(joined_from[level] * reach_mm, 2);
+    const double near_mm2 = far_mm2 / 4;
+    const double slope = 1 / (far_mm2 - near_mm2);
+    params::HiddenLevel& finer = material.levels[level];
+    params::HiddenLevel& next = material.levels[level + 1];
+    finer.to_mm2 = f(far_mm2);
+    finer.fall_slope = f(-slope);
+    finer.fall_offset = f(far_mm2 * slope);
+    next.from_mm2 = f(near_mm2);
+    next.rise_slope = f(slope);
+    next.rise_offset = f(-near_mm2 * slope);
+  }
+}
+
 /// Appends the cells of one material.
 void append_cells(std::span<const HiddenPatch> patches, params::HiddenMaterial material, HiddenSamples& to) {
   const double reach_mm = static_cast<double>(material.reach_mm);
   material.first_cell = static_cast<int>(to.cells.size());
-  for (std::size_t level = 0; level < joined_from.size(); ++level) {
-    material.near_mm[level] = static_cast<float>(joined_from[level] / 2 * reach_mm);
-    material.far_mm[level] = static_cast<float>(joined_from[level] * reach_mm);
-  }
+  set_levels(material);
   const double cell_mm = cell_side * reach_mm;
   std::vector<std::pair<Cube, const HiddenPatch*>> sorted;
   for (const HiddenPatch& patch : patches) sorted.emplace_back(cube_of(patch.patch->at, cell_mm), &patch);
