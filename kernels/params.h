@@ -159,10 +159,10 @@ struct HiddenMaterial {
   float reach_mm;
   struct HiddenLevel levels[HIDDEN_LEVELS];
   int crossing;
-  float slab_step_mm;              // of walks: from one thickness of slab_gain to the next, the first of which is 0
-  float bend_mm[3];                // how much a curvature of 1/mm adds
-  float mfp2_mm2[3];               // square of the mean free path
-  float slab_gain[SLAB_NODES][4];  // the fourth is not used
+  float slab_nodes_per_mm;  // of walks: of slab_gain, by thickness; the first node is at 0
+  float bend_mm[3];         // how much a curvature of 1/mm adds
+  float mfp2_mm2[3];        // square of the mean free path
+  float slab_gain[SLAB_NODES][4] __attribute__((aligned(16)));  // read as float4, whose last number is not used
 };
 
 // The choices of a run; each member is 0 or 1.

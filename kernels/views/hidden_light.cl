@@ -180,21 +180,9 @@ static inline vfloat projection_factor(const Target* target, global const struct
 #if WALK
 // The gains of slabs of these thicknesses.
 static inline vrgb slab_gain(global const struct HiddenMaterial* its, vfloat thickness_mm) {
-  const vfloat at = clamp(thickness_mm / its->slab_step_mm, (vfloat)(0.0f), (vfloat)(SLAB_NODES - 1.001f));
-  vrgb gain;
-#define READ_LANE(lane)                                                           \
-  {                                                                               \
-    const int node = (int)LANE(at, lane);                                         \
-    const float4 below = vload4(node, its->slab_gain[0]);                         \
-    const float4 above = vload4(node + 1, its->slab_gain[0]);                     \
-    const float4 value = fma(above - below, LANE(at, lane) - (float)node, below); \
-    LANE(gain.r, lane) = value.x;                                                 \
-    LANE(gain.g, lane) = value.y;                                                 \
-    LANE(gain.b, lane) = value.z;                                                 \
-  }
-  EACH_LANE(READ_LANE)
-#undef READ_LANE
-  return gain;
+  const vfloat at = clamp(thickness_mm * its->slab_nodes_per_mm, (vfloat)(0.0f), (vfloat)(SLAB_NODES - 1.001f));
+  const vint node = convert_vint(at);
+  return between_nodes((global const float4*)its->slab_gain, node, at - convert_vfloat(node));
 }
 
 // Adds light that has walked. A surface that bends away lets light out earlier: a pair of points gains
