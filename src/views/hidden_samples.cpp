@@ -70,7 +70,6 @@ std::vector<Patch> patches_of(const ViewPixels& view) {
   std::vector<Patch> patches;
   std::vector<double> ways;
   for (const params::ViewPixel& pixel : view) {
-    if (pixel.material == 0) continue;
     Patch patch{
         vector_of(pixel.position), vector_of(pixel.normal),   vector_of(pixel.along_x), vector_of(pixel.along_y), 0,
         pixel.material - 1,        pixel.place != PLACE_SEEN, vector_of(pixel.light)};
