@@ -119,13 +119,15 @@ struct ViewPixel {
 #define PLACE_HIDDEN 1
 #define PLACE_CONTRADICTING 2  // in front of what the camera sees
 
-// Hidden surface that stands for the light that enters on an area.
+// Hidden surface: parts x parts areas side by side, each of which stands for the light that enters there.
 struct HiddenSample {
-  float position[3];
-  float area_mm2;
+  float position[3];  // mm, of the middle
+  float area_mm2;     // of a part
   float light[3];
   float normal[3];
-  float padding[2];
+  int parts;
+  float radius_mm;             // of a ball around the middle that has all parts within it
+  float half_x[3], half_y[3];  // half a part, mm: the middles of parts are apart by twice as much
 };
 
 // Hidden surface is there in so many levels of detail, for what is near and for what is far: in parts of pixels, and
@@ -149,7 +151,7 @@ struct HiddenCell {
 // At what squared distances the samples of a level count, mm^2: not up to `from` nor beyond `to`, and in part where
 // slope * distance + offset is below 1, of `rise` from the finer level and of `fall` to the next one.
 struct HiddenLevel {
-  float from_mm2, to_mm2;
+  float from_mm2, to_mm2, to_mm;
   float rise_slope, rise_offset;
   float fall_slope, fall_offset;
 };

@@ -219,35 +219,61 @@ static inline vfloat share_of(global const struct HiddenLevel* level, vfloat r_s
   return t * t * (3.0f - 2.0f * t);
 }
 
-// Adds some samples of a level.
+static inline vfloat square_of(Vectors a) { return fma(a.x, a.x, fma(a.y, a.y, a.z * a.z)); }
+
+// The way to a place in a sample, from its middle by a and b times half of a part.
+static inline Vectors way_to(global const struct HiddenSample* sample, float a, float b, Vectors from) {
+  global const float *x = sample->half_x, *y = sample->half_y, *middle = sample->position;
+  const Vectors way = {fma(b, y[0], fma(a, x[0], middle[0])) - from.x, fma(b, y[1], fma(a, x[1], middle[1])) - from.y,
+                       fma(b, y[2], fma(a, x[2], middle[2])) - from.z};
+  return way;
+}
+
+// Adds a part of a sample.
+FORCED_INLINE void add_part(Sum* sum, const Profile* profile, global const struct HiddenMaterial* its,
+                            const Target* target, global const struct HiddenSample* sample,
+                            global const struct HiddenLevel* level, Vectors way) {
+  const vfloat r_squared = square_of(way);
+  const vint counts = AS_MASK(r_squared > level->from_mm2) & AS_MASK(r_squared < level->to_mm2);
+  if (!any_bit(counts)) return;
+  const vfloat softened = fma((vfloat)(PATCH), (vfloat)(sample->area_mm2), r_squared);
+  const vrgb density = radial_at(profile, softened);
+  vfloat area = select_or_zero(counts, share_of(level, r_squared) * sample->area_mm2);
+#if PROJECTED
+  if (its->crossing == CROSSING_PROJECTED) area *= projection_factor(target, sample, way, r_squared);
+#endif
+  const vrgb weight = times(density, area);
+  sum->weight = sum_rgb(sum->weight, weight);
+#if WALK
+  if (its->crossing == CROSSING_WALK) {
+    add_walked(sum, its, target, sample, way, softened, weight);
+    return;
+  }
+#endif
+  sum->light.r = fma(weight.r, (vfloat)(sample->light[0]), sum->light.r);
+  sum->light.g = fma(weight.g, (vfloat)(sample->light[1]), sum->light.g);
+  sum->light.b = fma(weight.b, (vfloat)(sample->light[2]), sum->light.b);
+}
+
+// Adds samples of a level.
 SHARED void add_samples(Sum* to, const Profile* profile, global const struct HiddenMaterial* its, const Target* target,
                         global const struct HiddenSample* samples, int count, global const struct HiddenLevel* level) {
   Sum sum = *to;
   const Vectors at = target->at;
-  const float from = level->from_mm2, end = level->to_mm2;
   for (int i = 0; i < count; ++i) {
     global const struct HiddenSample* sample = samples + i;
-    const Vectors way = {sample->position[0] - at.x, sample->position[1] - at.y, sample->position[2] - at.z};
-    const vfloat r_squared = fma(way.x, way.x, fma(way.y, way.y, way.z * way.z));
-    const vint counts = AS_MASK(r_squared > from) & AS_MASK(r_squared < end);
-    if (!any_bit(counts)) continue;
-    const vfloat softened = fma((vfloat)(PATCH), (vfloat)(sample->area_mm2), r_squared);
-    const vrgb density = radial_at(profile, softened);
-    vfloat area = select_or_zero(counts, share_of(level, r_squared) * sample->area_mm2);
-#if PROJECTED
-    if (its->crossing == CROSSING_PROJECTED) area *= projection_factor(target, sample, way, r_squared);
-#endif
-    const vrgb weight = times(density, area);
-    sum.weight = sum_rgb(sum.weight, weight);
-#if WALK
-    if (its->crossing == CROSSING_WALK) {
-      add_walked(&sum, its, target, sample, way, softened, weight);
-      continue;
+    const int parts = sample->parts;
+    if (parts > 1) {
+      const float end = level->to_mm + sample->radius_mm;
+      const vfloat r_squared = square_of(way_to(sample, 0.0f, 0.0f, at));
+      if (!any_bit(AS_MASK(r_squared < end * end))) continue;
     }
-#endif
-    sum.light.r = fma(weight.r, (vfloat)(sample->light[0]), sum.light.r);
-    sum.light.g = fma(weight.g, (vfloat)(sample->light[1]), sum.light.g);
-    sum.light.b = fma(weight.b, (vfloat)(sample->light[2]), sum.light.b);
+    for (int v = 1; v < 2 * parts; v += 2) {
+      for (int u = 1; u < 2 * parts; u += 2) {
+        const Vectors way = way_to(sample, (float)(u - parts), (float)(v - parts), at);
+        add_part(&sum, profile, its, target, sample, level, way);
+      }
+    }
   }
   *to = sum;
 }

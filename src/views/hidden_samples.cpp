@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <unordered_map>
 #include <utility>
 
@@ -171,10 +172,14 @@ struct Sample {
   double area_mm2;
 };
 
-void split(const HiddenPatch& its, double reach_mm, std::vector<Sample>& samples) {
+/// Into so many parts along an edge a patch is split, until they are no larger than a length.
+int parts_of(const Patch& patch, double largest_mm) {
+  return std::clamp(static_cast<int>(std::ceil(std::sqrt(patch.area_mm2) / largest_mm)), 1, most_parts);
+}
+
+void split(const HiddenPatch& its, double largest_mm, std::vector<Sample>& samples) {
   const Patch& patch = *its.patch;
-  const double side = std::sqrt(patch.area_mm2);
-  const int parts = std::clamp(static_cast<int>(std::ceil(side / (largest_part * reach_mm))), 1, most_parts);
+  const int parts = parts_of(patch, largest_mm);
   for (int j = 0; j < parts; ++j) {
     for (int i = 0; i < parts; ++i) {
       const auto offset = [&](int k) { return (k + 0.5) / parts - 0.5; };
@@ -184,14 +189,31 @@ void split(const HiddenPatch& its, double reach_mm, std::vector<Sample>& samples
   }
 }
 
+void store(const Vector& from, float (&to)[3]) {
+  for (int k = 0; k < 3; ++k) to[k] = static_cast<float>(from[k]);
+}
+
 params::HiddenSample params_of(const Sample& sample) {
-  const auto f = [](double value) { return static_cast<float>(value); };
-  const double normal = length(sample.normal);
-  return {{f(sample.at[0]), f(sample.at[1]), f(sample.at[2])},
-          f(sample.area_mm2),
-          {f(sample.light[0]), f(sample.light[1]), f(sample.light[2])},
-          {f(sample.normal[0] / normal), f(sample.normal[1] / normal), f(sample.normal[2] / normal)},
-          {}};
+  params::HiddenSample result{};
+  store(sample.at, result.position);
+  store(sample.light, result.light);
+  store(sum({}, sample.normal, 1 / length(sample.normal)), result.normal);
+  result.area_mm2 = static_cast<float>(sample.area_mm2);
+  result.parts = 1;
+  return result;
+}
+
+/// The parts are made in the kernel, for there are many.
+params::HiddenSample params_of(const HiddenPatch& its, double reach_mm) {
+  const Patch& patch = *its.patch;
+  const int parts = parts_of(patch, largest_part * reach_mm);
+  params::HiddenSample result = params_of(Sample{patch.at, patch.normal, patch.light, its.area_mm2 / (parts * parts)});
+  result.parts = parts;
+  if (parts == 1) return result;
+  store(sum({}, patch.along_x, 0.5 / parts), result.half_x);
+  store(sum({}, patch.along_y, 0.5 / parts), result.half_y);
+  result.radius_mm = static_cast<float>((length(patch.along_x) + length(patch.along_y)) / 2);
+  return result;
 }
 
 /// The axis that a normal is nearest to, with its sign: samples of both sides of a thin part stay apart.
@@ -237,21 +259,42 @@ std::vector<Sample> joined(std::span<const Sample> samples, const Cube& cell, do
   return result;
 }
 
-/// Appends a cell, which has all its samples on each level.
-void append_cell(std::vector<Sample> samples, const Cube& cube, double cell_mm,
-                 const std::array<int, HIDDEN_LEVELS - 1>& cubes, HiddenSamples& to) {
-  params::HiddenCell cell{};
+/// Makes the box of a cell large enough for a sample.
+void include(const params::HiddenSample& sample, params::HiddenCell& cell) {
   for (int k = 0; k < 3; ++k) {
-    const auto [low, high] = std::minmax_element(samples.begin(), samples.end(),
-                                                 [&](const auto& a, const auto& b) { return a.at[k] < b.at[k]; });
-    cell.low[k] = static_cast<float>(low->at[k]);
-    cell.high[k] = static_cast<float>(high->at[k]);
+    const float half = static_cast<float>(sample.parts) * (std::abs(sample.half_x[k]) + std::abs(sample.half_y[k]));
+    cell.low[k] = std::min(cell.low[k], sample.position[k] - half);
+    cell.high[k] = std::max(cell.high[k], sample.position[k] + half);
   }
-  for (std::size_t level = 0; level < HIDDEN_LEVELS; ++level) {
-    if (level > 0) samples = joined(samples, cube, cell_mm, cubes[level - 1]);
+}
+
+/// Appends a cell, which has all its samples on each level.
+void append_cell(std::span<const std::pair<Cube, const HiddenPatch*>> patches, const params::HiddenMaterial& material,
+                 HiddenSamples& to) {
+  const double reach_mm = static_cast<double>(material.reach_mm);
+  const double cell_mm = cell_side * reach_mm;
+  const auto& cubes = material.crossing == CROSSING_PROJECTED ? projected_cubes : joined_cubes;
+  params::HiddenCell cell{};
+  std::fill_n(cell.low, 3, std::numeric_limits<float>::infinity());
+  std::fill_n(cell.high, 3, -std::numeric_limits<float>::infinity());
+  std::vector<Sample> samples;
+  const auto begin = [&](int level, std::size_t count) {
     cell.first[level] = static_cast<int>(to.samples.size());
-    cell.samples[level] = static_cast<int>(samples.size());
-    for (const Sample& sample : samples) to.samples.push_back(params_of(sample));
+    cell.samples[level] = static_cast<int>(count);
+  };
+  begin(0, patches.size());
+  for (const auto& [cube, patch] : patches) {
+    to.samples.push_back(params_of(*patch, reach_mm));
+    include(to.samples.back(), cell);
+    split(*patch, cell_mm / cubes[0] / 2, samples);
+  }
+  for (int level = 1; level < HIDDEN_LEVELS; ++level) {
+    samples = joined(samples, patches.front().first, cell_mm, cubes[level - 1]);
+    begin(level, samples.size());
+    for (const Sample& sample : samples) {
+      to.samples.push_back(params_of(sample));
+      include(to.samples.back(), cell);
+    }
   }
   to.cells.push_back(cell);
 }
@@ -260,7 +303,7 @@ void append_cell(std::vector<Sample> samples, const Cube& cube, double cell_mm,
 void set_levels(params::HiddenMaterial& material) {
   const double reach_mm = static_cast<double>(material.reach_mm);
   const auto f = [](double value) { return static_cast<float>(value); };
-  for (params::HiddenLevel& level : material.levels) level = {-1, f(reach_mm * reach_mm), 0, 1, 0, 1};
+  for (params::HiddenLevel& level : material.levels) level = {-1, f(reach_mm * reach_mm), f(reach_mm), 0, 1, 0, 1};
   for (std::size_t level = 0; level < joined_from.size(); ++level) {
     const double far_mm2 = std::pow(joined_from[level] * reach_mm, 2);
     const double near_mm2 = far_mm2 / 4;
@@ -268,6 +311,7 @@ void set_levels(params::HiddenMaterial& material) {
     params::HiddenLevel& finer = material.levels[level];
     params::HiddenLevel& next = material.levels[level + 1];
     finer.to_mm2 = f(far_mm2);
+    finer.to_mm = f(std::sqrt(far_mm2));
     finer.fall_slope = f(-slope);
     finer.fall_offset = f(far_mm2 * slope);
     next.from_mm2 = f(near_mm2);
@@ -285,12 +329,9 @@ void append_cells(std::span<const HiddenPatch> patches, params::HiddenMaterial m
   std::vector<std::pair<Cube, const HiddenPatch*>> sorted;
   for (const HiddenPatch& patch : patches) sorted.emplace_back(cube_of(patch.patch->at, cell_mm), &patch);
   std::sort(sorted.begin(), sorted.end());  // patches of a cube as they are in the list
-  const auto& cubes = material.crossing == CROSSING_PROJECTED ? projected_cubes : joined_cubes;
-  for (auto its = sorted.begin(); its != sorted.end();) {
-    const Cube cube = its->first;
-    std::vector<Sample> samples;
-    for (; its != sorted.end() && its->first == cube; ++its) split(*its->second, reach_mm, samples);
-    append_cell(std::move(samples), cube, cell_mm, cubes, to);
+  for (std::size_t first = 0, last = 0; first < sorted.size(); first = last) {
+    while (last < sorted.size() && sorted[last].first == sorted[first].first) ++last;
+    append_cell({sorted.data() + first, last - first}, material, to);
   }
   material.cells = static_cast<int>(to.cells.size()) - material.first_cell;
   to.materials.push_back(material);
