@@ -110,7 +110,7 @@ struct ViewPixel {
   float along_x[3];  // along the surface to the next pixel; 0 if that is not known
   float along_y[3];
   float light[3];
-  int material;  // 1 + its index; 0: background, or not known well enough
+  int material;  // 1 + its index; 0: background, or a place that is not finite
   int place;
 };
 
@@ -118,6 +118,7 @@ struct ViewPixel {
 #define PLACE_SEEN 0
 #define PLACE_HIDDEN 1
 #define PLACE_CONTRADICTING 2  // in front of what the camera sees
+#define PLACE_UNLIT 3          // its light is not finite: only its neighbours' surface needs it
 
 // Hidden surface: parts x parts areas side by side, each of which stands for the light that enters there.
 struct HiddenSample {

@@ -1,5 +1,5 @@
-// view_pixels: finds where the surface of each pixel of a view lies, how much of it there is, and whether the camera of
-// the frame sees it. A work-item has a row of pixels, or one pixel.
+// view_pixels and view_surface: where the surface of each pixel of a view lies and what light it has, then how much of
+// it there is and whether the camera of the frame sees it. A work-item has a run of `columns` pixels of a row.
 #pragma OPENCL FP_CONTRACT OFF
 #include "frame/load.h"
 #include "frame/material.h"
@@ -16,54 +16,28 @@ static inline void store_vector(global float* to, float3 v) {
   to[2] = v.z;
 }
 
-typedef struct {
-  const struct ViewParams* params;
-  const struct ViewLayouts* layouts;
-  global const uchar *light, *albedo, *position, *normal, *material;
-} View;
-
 // Turns a vector to the axes of the frame's camera, and scales it to mm.
-static inline float3 turned_to_camera(const View* view, float3 v) {
-  const float* m = view->params->to_camera;
+static inline float3 turned_to_camera(const float* m, float3 v) {
   return (float3)(dot_of((float3)(m[0], m[1], m[2]), v), dot_of((float3)(m[4], m[5], m[6]), v),
                   dot_of((float3)(m[8], m[9], m[10]), v));
 }
 
-static inline float3 position_at(const View* view, int x, int y) {
-  const float* m = view->params->to_camera;
-  const float3 v = read_vector(view->position, &view->layouts->position, view->params->width, x, y);
-  return turned_to_camera(view, v) + (float3)(m[3], m[7], m[11]);
-}
-
-static inline float3 normal_at(const View* view, int x, int y) {
-  return turned_to_camera(view, read_vector(view->normal, &view->layouts->normal, view->params->width, x, y));
-}
-
-static inline int material_at(const View* view, global const struct MaterialParams* materials, int x, int y) {
-#if HAS_MATERIAL
-  return find_material(read_value(view->material, &view->layouts->material, view->params->width, x, y), materials);
-#else
-  return 1;
-#endif
-}
-
 // The way along the surface to the next pixel along (dx, dy): the mean of the ways from and to both neighbours of the
 // material, but the shorter one alone where the other is more than twice as long, for that leads to another sheet.
-static inline float3 way_along(const View* view, global const struct MaterialParams* materials, int material, float3 at,
-                               float3 normal, int x, int y, int dx, int dy) {
+static inline float3 way_along(global const struct ViewPixel* pixels, const struct ViewParams* params, int x, int y,
+                               int dx, int dy) {
+  global const struct ViewPixel* pixel = pixels + (size_t)y * params->width + x;
+  const float3 normal = vector_at(pixel->normal);
   float3 ways[2];
   float lengths[2];
   int count = 0;
   for (int side = -1; side <= 1; side += 2) {
     const int u = x + side * dx;
     const int v = y + side * dy;
-    if (u < 0 || v < 0 || u >= view->params->width || v >= view->params->height) continue;
-    if (material_at(view, materials, u, v) != material) continue;
-    const float3 there = position_at(view, u, v);
-    const float3 normal_there = normal_at(view, u, v);
-    if (!is_finite_vector(there) || !is_finite_vector(normal_there)) continue;
-    if (!(dot_of(normal_there, normal) > 0.0f)) continue;
-    const float3 way = (float)side * (there - at);
+    if (u < 0 || v < 0 || u >= params->width || v >= params->height) continue;
+    global const struct ViewPixel* other = pixels + (size_t)v * params->width + u;
+    if (other->material != pixel->material || !(dot_of(vector_at(other->normal), normal) > 0.0f)) continue;
+    const float3 way = (float)side * (vector_at(other->position) - vector_at(pixel->position));
     ways[count] = way - dot_of(way, normal) * normal;
     lengths[count] = sqrt(dot_of(ways[count], ways[count]));
     ++count;
@@ -110,43 +84,55 @@ static inline int place_of(const Seen* seen, int material, float3 at, float3 nor
   return is_in_front ? PLACE_CONTRADICTING : PLACE_HIDDEN;
 }
 
-kernel void view_pixels(struct FrameParams f, struct FrameLayouts layouts, global const uchar* depth,
-                        global const uchar* material_ids, struct ViewParams params, struct ViewLayouts view_layouts,
+kernel void view_pixels(struct FrameParams f, struct ViewParams params, struct ViewLayouts layouts,
                         global const uchar* light, global const uchar* albedo, global const uchar* position,
                         global const uchar* normal, global const uchar* material,
                         global const struct MaterialParams* materials, int columns, global struct ViewPixel* pixels) {
-  const View view = {&params, &view_layouts, light, albedo, position, normal, material};
-  const Seen seen = {&f, &layouts, depth, material_ids};
   const int y = get_global_id(1);
   const int x_begin = (int)get_global_id(0) * columns;
-  const RgbRow lights = rgb_row_of(light, &view_layouts.light, params.width, y);
+  const RgbRow lights = rgb_row_of(light, &layouts.light, params.width, y);
 #if HAS_ALBEDO
-  const RgbRow albedos = rgb_row_of(albedo, &view_layouts.albedo, params.width, y);
+  const RgbRow albedos = rgb_row_of(albedo, &layouts.albedo, params.width, y);
 #endif
   for (int x = x_begin; x < min(x_begin + columns, params.width); ++x) {
     global struct ViewPixel* pixel = pixels + (size_t)y * params.width + x;
     pixel->material = 0;
-    const int its_material = material_at(&view, materials, x, y);
+    int its_material = 1;
+#if HAS_MATERIAL
+    its_material = find_material(read_value(material, &layouts.material, params.width, x, y), materials);
+#endif
     if (its_material == 0) continue;
-    const float3 at = position_at(&view, x, y);
-    const float3 its_way = normal_at(&view, x, y);
-    const float3 its_normal = its_way / sqrt(dot_of(its_way, its_way));
-    if (!is_finite_vector(at) || !is_finite_vector(its_normal)) continue;
+    const float* m = params.to_camera;
+    const float3 at =
+        turned_to_camera(m, read_vector(position, &layouts.position, params.width, x, y)) + (float3)(m[3], m[7], m[11]);
+    const float3 its_normal = turned_to_camera(m, read_vector(normal, &layouts.normal, params.width, x, y));
+    const float3 its_unit = its_normal / sqrt(dot_of(its_normal, its_normal));
+    if (!is_finite_vector(at) || !is_finite_vector(its_unit)) continue;
     vrgb its_albedo = broadcast_rgb(1.0f);
 #if HAS_ALBEDO
     its_albedo = read_rgb(&albedos, x);
 #endif
     const vrgb written_light = read_rgb(&lights, x);
     const vrgb its_light = scattering_light(&f, written_light, its_albedo);
-    if (bad_lanes(its_material, written_light, its_albedo, its_light)) continue;
     pixel->material = its_material;
+    pixel->place = bad_lanes(its_material, written_light, its_albedo, its_light) ? PLACE_UNLIT : PLACE_HIDDEN;
     store_vector(pixel->position, at);
-    store_vector(pixel->normal, its_normal);
-    store_vector(pixel->along_x, way_along(&view, materials, its_material, at, its_normal, x, y, 1, 0));
-    store_vector(pixel->along_y, way_along(&view, materials, its_material, at, its_normal, x, y, 0, 1));
-    pixel->light[0] = its_light.r;
-    pixel->light[1] = its_light.g;
-    pixel->light[2] = its_light.b;
-    pixel->place = place_of(&seen, its_material, at, its_normal);
+    store_vector(pixel->normal, its_unit);
+    store_vector(pixel->light, (float3)(its_light.r, its_light.g, its_light.b));
+  }
+}
+
+kernel void view_surface(struct FrameParams f, struct FrameLayouts layouts, global const uchar* depth,
+                         global const uchar* material_ids, struct ViewParams params, int columns,
+                         global struct ViewPixel* pixels) {
+  const Seen seen = {&f, &layouts, depth, material_ids};
+  const int y = get_global_id(1);
+  const int x_begin = (int)get_global_id(0) * columns;
+  for (int x = x_begin; x < min(x_begin + columns, params.width); ++x) {
+    global struct ViewPixel* pixel = pixels + (size_t)y * params.width + x;
+    if (pixel->material == 0 || pixel->place == PLACE_UNLIT) continue;
+    store_vector(pixel->along_x, way_along(pixels, &params, x, y, 1, 0));
+    store_vector(pixel->along_y, way_along(pixels, &params, x, y, 0, 1));
+    pixel->place = place_of(&seen, pixel->material, vector_at(pixel->position), vector_at(pixel->normal));
   }
 }

@@ -182,12 +182,16 @@ ViewPixels HiddenLight::pixels_of(FrameRun& run, const View& view, double mm_per
   const cl::Buffer pixels(run.context(), CL_MEM_READ_WRITE, bytes);
   const params::ViewLayouts layouts{bound.layout(light), bound.layout(albedo), bound.layout(position),
                                     bound.layout(normal), bound.layout(material)};
-  cl::Kernel kernel(state_->pixels, "view_pixels");
-  set_arguments(kernel, run.frame(), run.images().layouts(), run.images().buffers({ImageName::depth}),
-                run.memory().material_ids, params_of(view, mm_per_unit), layouts, buffer(light), buffer(albedo),
-                buffer(position), buffer(normal), buffer(material), run.materials(), run.run_length(view.width),
-                pixels);
-  run.launch_runs(kernel, view.width, view.height);
+  const params::ViewParams view_params = params_of(view, mm_per_unit);
+  const cl_int columns = run.run_length(view.width);
+  cl::Kernel of_pixels(state_->pixels, "view_pixels");
+  set_arguments(of_pixels, run.frame(), view_params, layouts, buffer(light), buffer(albedo), buffer(position),
+                buffer(normal), buffer(material), run.materials(), columns, pixels);
+  run.launch_runs(of_pixels, view.width, view.height);
+  cl::Kernel of_surface(state_->pixels, "view_surface");
+  set_arguments(of_surface, run.frame(), run.images().layouts(), run.images().buffers({ImageName::depth}),
+                run.memory().material_ids, view_params, columns, pixels);
+  run.launch_runs(of_surface, view.width, view.height);
   const auto* all =
       static_cast<const params::ViewPixel*>(run.queue().enqueueMapBuffer(pixels, CL_TRUE, CL_MAP_READ, 0, bytes));
   ViewPixels result;
