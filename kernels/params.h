@@ -149,8 +149,9 @@ struct HiddenCell {
 // Gains of a slab over the profile, at so many thicknesses.
 #define SLAB_NODES 32
 
-// At what squared distances the samples of a level count, mm^2: not up to `from` nor beyond `to`, and in part where
-// slope * distance + offset is below 1, of `rise` from the finer level and of `fall` to the next one.
+// At what squared distances the samples of a level count, mm^2: between `from` and `to`, and in part where
+// slope * distance + offset is below 1, of `rise` from the finer level and of `fall` to the next one. `to_mm` is the
+// root of `to`.
 struct HiddenLevel {
   float from_mm2, to_mm2, to_mm;
   float rise_slope, rise_offset;

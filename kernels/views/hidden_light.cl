@@ -72,9 +72,9 @@ static inline int may_count(const Box* box, global const struct HiddenCell* cell
   return nearest < level->to_mm2 && farthest > level->from_mm2;
 }
 
-// The samples of one level in one cell, by number: those that a region of pixels may gather from, or all of a material
-// if there are too many.
-#define MOST_LISTED 1024
+// Runs of samples, each of one level in one cell, by number: those that a region of pixels may gather from, or all of a
+// material if there are too many. A region of one pixel needs no list.
+#define MOST_LISTED (V > 1 ? 1024 : 1)
 typedef struct {
   int list[MOST_LISTED];
   int count;
@@ -221,7 +221,7 @@ static inline vfloat share_of(global const struct HiddenLevel* level, vfloat r_s
 
 static inline vfloat square_of(Vectors a) { return fma(a.x, a.x, fma(a.y, a.y, a.z * a.z)); }
 
-// The way to a place in a sample, from its middle by a and b times half of a part.
+// The way to a place in a sample, which is a and b times half of a part from its middle.
 static inline Vectors way_to(global const struct HiddenSample* sample, float a, float b, Vectors from) {
   global const float *x = sample->half_x, *y = sample->half_y, *middle = sample->position;
   const Vectors way = {fma(b, y[0], fma(a, x[0], middle[0])) - from.x, fma(b, y[1], fma(a, x[1], middle[1])) - from.y,
@@ -263,7 +263,7 @@ SHARED void add_samples(Sum* to, const Profile* profile, global const struct Hid
   for (int i = 0; i < count; ++i) {
     global const struct HiddenSample* sample = samples + i;
     const int parts = sample->parts;
-    if (parts > 1) {
+    if (parts > 1) {  // which may all be too far away
       const float end = level->to_mm + sample->radius_mm;
       const vfloat r_squared = square_of(way_to(sample, 0.0f, 0.0f, at));
       if (!any_bit(AS_MASK(r_squared < end * end))) continue;
