@@ -110,7 +110,7 @@ struct ViewPixel {
   float along_x[3];  // along the surface to the next pixel; 0 if that is not known
   float along_y[3];
   float light[3];
-  int material;  // 1 + its index; 0: background, or not known well enough
+  int material;  // 1 + its index; 0: background, or a place that is not finite
   int place;
 };
 
@@ -118,14 +118,17 @@ struct ViewPixel {
 #define PLACE_SEEN 0
 #define PLACE_HIDDEN 1
 #define PLACE_CONTRADICTING 2  // in front of what the camera sees
+#define PLACE_UNLIT 3          // its light is not finite: only its neighbours' surface needs it
 
-// Hidden surface that stands for the light that enters on an area.
+// Hidden surface: parts x parts areas side by side, each of which stands for the light that enters there.
 struct HiddenSample {
-  float position[3];
-  float area_mm2;
+  float position[3];  // mm, of the middle
+  float area_mm2;     // of a part
   float light[3];
   float normal[3];
-  float padding[2];
+  int parts;
+  float radius_mm;             // of a ball around the middle that has all parts within it
+  float half_x[3], half_y[3];  // half a part, mm: the middles of parts are apart by twice as much
 };
 
 // Hidden surface is there in so many levels of detail, for what is near and for what is far: in parts of pixels, and
@@ -146,16 +149,24 @@ struct HiddenCell {
 // Gains of a slab over the profile, at so many thicknesses.
 #define SLAB_NODES 32
 
+// At what squared distances the samples of a level count, mm^2: between `from` and `to`, and in part where
+// slope * distance + offset is below 1, of `rise` from the finer level and of `fall` to the next one. `to_mm` is the
+// root of `to`.
+struct HiddenLevel {
+  float from_mm2, to_mm2, to_mm;
+  float rise_slope, rise_offset;
+  float fall_slope, fall_offset;
+};
+
 struct HiddenMaterial {
   int first_cell, cells;
   float reach_mm;
-  // From a level to the next one: up to the one distance all light is of the first, from the other on of the second.
-  float near_mm[HIDDEN_LEVELS - 1], far_mm[HIDDEN_LEVELS - 1];
+  struct HiddenLevel levels[HIDDEN_LEVELS];
   int crossing;
-  float slab_step_mm;              // of walks: from one thickness of slab_gain to the next, the first of which is 0
-  float bend_mm[3];                // how much a curvature of 1/mm adds
-  float mfp2_mm2[3];               // square of the mean free path
-  float slab_gain[SLAB_NODES][4];  // the fourth is not used
+  float slab_nodes_per_mm;  // of walks: of slab_gain, by thickness; the first node is at 0
+  float bend_mm[3];         // how much a curvature of 1/mm adds
+  float mfp2_mm2[3];        // square of the mean free path
+  float slab_gain[SLAB_NODES][4] __attribute__((aligned(16)));  // read as float4, whose last number is not used
 };
 
 // The choices of a run; each member is 0 or 1.

@@ -1,7 +1,7 @@
 // The highlight of Shading, by tables: Beckmann's distribution over the square of a tangent, and the share rho that the
 // highlight reflects, over a cosine.
 #include "base/linear_table.h"
-#include "lighting/space.h"
+#include "frame/space.h"
 
 typedef struct {
   global const float4* tables;

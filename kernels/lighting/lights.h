@@ -1,5 +1,5 @@
 // Light at a point, and the surface that a light's map shows: Light and ShadowMap of lights.hpp.
-#include "lighting/space.h"
+#include "frame/space.h"
 
 // The light that reaches a point if nothing lies between. No light reaches the light itself.
 typedef struct {

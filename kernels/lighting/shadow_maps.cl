@@ -1,5 +1,5 @@
 // gather_map copies the depths of one shadow map, from any format, into the buffer of all maps.
-#include "lighting/space.h"
+#include "frame/space.h"
 
 // A work-item has one texel.
 kernel void gather_map(global const uchar* map, struct ImageParams map_at, int width, global float* maps,

@@ -6,14 +6,6 @@
 // A sample is a patch: its light does not come from one point. See METHODS.md.
 #define PATCH 0.08f
 
-// Cells of one material within reach of some pixels: those listed, or all of them if there are too many.
-#define MOST_LISTED 256
-typedef struct {
-  int list[MOST_LISTED];
-  int count;
-  int is_listed;
-} Cells;
-
 // Writes 1 where light is finite and NaN elsewhere, so that weights are summed over the pixels that give light. A
 // work-item has a run of `columns` pixels of a row.
 kernel void unit_light(struct FrameParams f, struct FrameLayouts layouts, global const uchar* light,
@@ -32,15 +24,27 @@ kernel void unit_light(struct FrameParams f, struct FrameLayouts layouts, global
   }
 }
 
-// A region of the frame: the box around the points of one material.
+// V vectors, mm, or of unit length.
+typedef struct {
+  vfloat x, y, z;
+} Vectors;
+
+static inline vfloat dot_of(const Vectors* a, float x, float y, float z) { return a->x * x + a->y * y + a->z * z; }
+
+static inline Vectors points_of(const struct FrameParams* f, vfloat z, int x, int y) {
+  const Vectors points = {
+      (convert_vfloat(x + int_lane_numbers()) + 0.5f - f->center_x) * fma(z, f->slope_x, f->mm_per_px_x),
+      ((float)y + 0.5f - f->center_y) * fma(z, f->slope_y, f->mm_per_px_y), z};
+  return points;
+}
+
+// The box around some pixels' points of one material.
 typedef struct {
   float low[3], high[3];
 } Box;
 
-static inline void include_points(Box* box, const struct FrameParams* f, const Points* p, vint mine, int x, int y) {
-  const vfloat at[3] = {
-      (convert_vfloat(x + int_lane_numbers()) + 0.5f - f->center_x) * fma(p->z, f->slope_x, f->mm_per_px_x),
-      ((float)y + 0.5f - f->center_y) * fma(p->z, f->slope_y, f->mm_per_px_y), p->z};
+static inline void include_points(Box* box, const Vectors* points, vint mine) {
+  const vfloat at[3] = {points->x, points->y, points->z};
   for (int i = 0; i < 3; ++i) {
 #define INCLUDE_LANE(lane)                                \
   if (LANE(mine, lane)) {                                 \
@@ -52,24 +56,43 @@ static inline void include_points(Box* box, const struct FrameParams* f, const P
   }
 }
 
-static inline void list_cells(Cells* cells, const Box* box, global const struct HiddenMaterial* its,
-                              global const struct HiddenCell* all) {
-  cells->count = 0;
-  cells->is_listed = 1;
-  for (int c = 0; c < its->cells; ++c) {
-    global const struct HiddenCell* cell = all + its->first_cell + c;
-    float square = 0.0f;
-    for (int i = 0; i < 3; ++i) {
-      const float gap = fmax(fmax(cell->low[i] - box->high[i], box->low[i] - cell->high[i]), 0.0f);
-      square = fma(gap, gap, square);
-    }
-    if (square >= its->reach_mm * its->reach_mm) continue;
-    if (cells->count == MOST_LISTED) {
-      cells->count = its->cells;
-      cells->is_listed = 0;
+// Whether samples of a level in a cell may count for points in a box. The squares are those of the nearest and of the
+// farthest points, rounded as those of pairs in between are, which they bound therefore.
+static inline int may_count(const Box* box, global const struct HiddenCell* cell,
+                            global const struct HiddenLevel* level) {
+  float nearest = 0.0f, farthest = 0.0f;
+  for (int i = 2; i >= 0; --i) {
+    const float above = cell->high[i] - box->low[i];
+    const float below = box->high[i] - cell->low[i];
+    const float gap = fmax(fmax(-above, -below), 0.0f);
+    const float span = fmax(above, below);
+    nearest = fma(gap, gap, nearest);
+    farthest = fma(span, span, farthest);
+  }
+  return nearest < level->to_mm2 && farthest > level->from_mm2;
+}
+
+// Runs of samples, each of one level in one cell, by number: those that a region of pixels may gather from, or all of a
+// material if there are too many. A region of one pixel needs no list.
+#define MOST_LISTED (V > 1 ? 1024 : 1)
+typedef struct {
+  int list[MOST_LISTED];
+  int count;
+  int is_listed;
+} Runs;
+
+static inline void list_runs(Runs* runs, const Box* box, global const struct HiddenMaterial* its,
+                             global const struct HiddenCell* cells) {
+  runs->count = 0;
+  runs->is_listed = 1;
+  for (int run = 0; run < HIDDEN_LEVELS * its->cells; ++run) {
+    if (!may_count(box, cells + run / HIDDEN_LEVELS, its->levels + run % HIDDEN_LEVELS)) continue;
+    if (runs->count == MOST_LISTED) {
+      runs->count = HIDDEN_LEVELS * its->cells;
+      runs->is_listed = 0;
       return;
     }
-    cells->list[cells->count++] = c;
+    runs->list[runs->count++] = run;
   }
 }
 
@@ -80,13 +103,6 @@ typedef struct {
   vrgb bent;  // what curvature adds to the light
 #endif
 } Sum;
-
-// V vectors, mm, or of unit length.
-typedef struct {
-  vfloat x, y, z;
-} Vectors;
-
-static inline vfloat dot_of(const Vectors* a, float x, float y, float z) { return a->x * x + a->y * y + a->z * z; }
 
 // The pixels that light is gathered for.
 typedef struct {
@@ -164,21 +180,9 @@ static inline vfloat projection_factor(const Target* target, global const struct
 #if WALK
 // The gains of slabs of these thicknesses.
 static inline vrgb slab_gain(global const struct HiddenMaterial* its, vfloat thickness_mm) {
-  const vfloat at = clamp(thickness_mm / its->slab_step_mm, (vfloat)(0.0f), (vfloat)(SLAB_NODES - 1.001f));
-  vrgb gain;
-#define READ_LANE(lane)                                                           \
-  {                                                                               \
-    const int node = (int)LANE(at, lane);                                         \
-    const float4 below = vload4(node, its->slab_gain[0]);                         \
-    const float4 above = vload4(node + 1, its->slab_gain[0]);                     \
-    const float4 value = fma(above - below, LANE(at, lane) - (float)node, below); \
-    LANE(gain.r, lane) = value.x;                                                 \
-    LANE(gain.g, lane) = value.y;                                                 \
-    LANE(gain.b, lane) = value.z;                                                 \
-  }
-  EACH_LANE(READ_LANE)
-#undef READ_LANE
-  return gain;
+  const vfloat at = clamp(thickness_mm * its->slab_nodes_per_mm, (vfloat)(0.0f), (vfloat)(SLAB_NODES - 1.001f));
+  const vint node = convert_vint(at);
+  return between_nodes((global const float4*)its->slab_gain, node, at - convert_vfloat(node));
 }
 
 // Adds light that has walked. A surface that bends away lets light out earlier: a pair of points gains
@@ -207,44 +211,71 @@ static inline void add_walked(Sum* sum, global const struct HiddenMaterial* its,
 }
 #endif
 
-// 0 up to the distance at which all light is of one level, 1 from that on at which it is of the next.
-static inline vfloat rise(vfloat r, global const struct HiddenMaterial* its, int level) {
-  const float per_mm = 1.0f / (its->far_mm[level] - its->near_mm[level]);
-  const vfloat t = clamp((r - its->near_mm[level]) * per_mm, (vfloat)(0.0f), (vfloat)(1.0f));
+// The share of the light from a squared distance that is of a level.
+static inline vfloat share_of(global const struct HiddenLevel* level, vfloat r_squared) {
+  const vfloat rise = fma(r_squared, (vfloat)(level->rise_slope), (vfloat)(level->rise_offset));
+  const vfloat fall = fma(r_squared, (vfloat)(level->fall_slope), (vfloat)(level->fall_offset));
+  const vfloat t = clamp(lower(rise, fall), (vfloat)(0.0f), (vfloat)(1.0f));
   return t * t * (3.0f - 2.0f * t);
 }
 
-// Adds the samples of a level, as far as light from their distance is of it.
-SHARED void add_samples(Sum* sum, const Profile* profile, global const struct HiddenMaterial* its, const Target* target,
-                        global const struct HiddenSample* samples, int count, int level) {
+static inline vfloat square_of(Vectors a) { return fma(a.x, a.x, fma(a.y, a.y, a.z * a.z)); }
+
+// The way to a place in a sample, which is a and b times half of a part from its middle.
+static inline Vectors way_to(global const struct HiddenSample* sample, float a, float b, Vectors from) {
+  global const float *x = sample->half_x, *y = sample->half_y, *middle = sample->position;
+  const Vectors way = {fma(b, y[0], fma(a, x[0], middle[0])) - from.x, fma(b, y[1], fma(a, x[1], middle[1])) - from.y,
+                       fma(b, y[2], fma(a, x[2], middle[2])) - from.z};
+  return way;
+}
+
+// Adds a part of a sample.
+FORCED_INLINE void add_part(Sum* sum, const Profile* profile, global const struct HiddenMaterial* its,
+                            const Target* target, global const struct HiddenSample* sample,
+                            global const struct HiddenLevel* level, Vectors way) {
+  const vfloat r_squared = square_of(way);
+  const vint counts = AS_MASK(r_squared > level->from_mm2) & AS_MASK(r_squared < level->to_mm2);
+  if (!any_bit(counts)) return;
+  const vfloat softened = fma((vfloat)(PATCH), (vfloat)(sample->area_mm2), r_squared);
+  const vrgb density = radial_at(profile, softened);
+  vfloat area = select_or_zero(counts, share_of(level, r_squared) * sample->area_mm2);
+#if PROJECTED
+  if (its->crossing == CROSSING_PROJECTED) area *= projection_factor(target, sample, way, r_squared);
+#endif
+  const vrgb weight = times(density, area);
+  sum->weight = sum_rgb(sum->weight, weight);
+#if WALK
+  if (its->crossing == CROSSING_WALK) {
+    add_walked(sum, its, target, sample, way, softened, weight);
+    return;
+  }
+#endif
+  sum->light.r = fma(weight.r, (vfloat)(sample->light[0]), sum->light.r);
+  sum->light.g = fma(weight.g, (vfloat)(sample->light[1]), sum->light.g);
+  sum->light.b = fma(weight.b, (vfloat)(sample->light[2]), sum->light.b);
+}
+
+// Adds samples of a level.
+SHARED void add_samples(Sum* to, const Profile* profile, global const struct HiddenMaterial* its, const Target* target,
+                        global const struct HiddenSample* samples, int count, global const struct HiddenLevel* level) {
+  Sum sum = *to;
+  const Vectors at = target->at;
   for (int i = 0; i < count; ++i) {
     global const struct HiddenSample* sample = samples + i;
-    const Vectors way = {sample->position[0] - target->at.x, sample->position[1] - target->at.y,
-                         sample->position[2] - target->at.z};
-    const vfloat r_squared = fma(way.x, way.x, fma(way.y, way.y, way.z * way.z));
-    const vfloat r = sqrt(r_squared);
-    vfloat share = (vfloat)(1.0f);
-    if (level > 0) share = rise(r, its, level - 1);
-    if (level < HIDDEN_LEVELS - 1) share -= rise(r, its, level);
-    const vint counts = AS_MASK(share > 0.0f) & AS_MASK(r_squared < its->reach_mm * its->reach_mm);
-    if (!any_bit(counts)) continue;
-    const vrgb density = radial_at(profile, fma((vfloat)(PATCH), (vfloat)(sample->area_mm2), r_squared));
-    vfloat area = select_or_zero(counts, share * sample->area_mm2);
-#if PROJECTED
-    if (its->crossing == CROSSING_PROJECTED) area *= projection_factor(target, sample, way, r_squared);
-#endif
-    const vrgb weight = times(density, area);
-    sum->weight = sum_rgb(sum->weight, weight);
-#if WALK
-    if (its->crossing == CROSSING_WALK) {
-      add_walked(sum, its, target, sample, way, fma((vfloat)(PATCH), (vfloat)(sample->area_mm2), r_squared), weight);
-      continue;
+    const int parts = sample->parts;
+    if (parts > 1) {  // which may all be too far away
+      const float end = level->to_mm + sample->radius_mm;
+      const vfloat r_squared = square_of(way_to(sample, 0.0f, 0.0f, at));
+      if (!any_bit(AS_MASK(r_squared < end * end))) continue;
     }
-#endif
-    sum->light.r = fma(weight.r, (vfloat)(sample->light[0]), sum->light.r);
-    sum->light.g = fma(weight.g, (vfloat)(sample->light[1]), sum->light.g);
-    sum->light.b = fma(weight.b, (vfloat)(sample->light[2]), sum->light.b);
+    for (int v = 1; v < 2 * parts; v += 2) {
+      for (int u = 1; u < 2 * parts; u += 2) {
+        const Vectors way = way_to(sample, (float)(u - parts), (float)(v - parts), at);
+        add_part(&sum, profile, its, target, sample, level, way);
+      }
+    }
   }
+  *to = sum;
 }
 
 // The part of the whole that the light has which enters where the camera looks, and the sum of all.
@@ -275,20 +306,22 @@ kernel void hidden_light(struct FrameParams f, struct FrameLayouts layouts, glob
   for (int m = 0; m < MATERIALS; ++m) {
     global const struct HiddenMaterial* its = hidden + m;
     if (its->cells == 0) continue;
-    Box box = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+    const Box empty = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+    Box box = empty;
     for (int y = y_begin; y < y_end; ++y) {
       const InputRows inputs = input_rows(&f, &in, y);
       for (int x = x_begin; x < x_end; x += V) {
         const vint mine = AS_MASK(load_bytes(inputs.material_ids + x) == m + 1);
         if (!any_bit(mine)) continue;
-        const Points p = points_at(&f, read_values(inputs.depth, x) * f.mm_per_unit, x, y);
-        include_points(&box, &f, &p, mine, x, y);
+        const Vectors points = points_of(&f, read_values(inputs.depth, x) * f.mm_per_unit, x, y);
+        include_points(&box, &points, mine);
       }
     }
     if (!(box.low[0] <= box.high[0])) continue;
-    Cells cells;
-    list_cells(&cells, &box, its, all_cells);
-    if (cells.count == 0) continue;
+    Runs runs;
+    global const struct HiddenCell* cells = all_cells + its->first_cell;
+    list_runs(&runs, &box, its, cells);
+    if (runs.count == 0) continue;
     for (int y = y_begin; y < y_end; ++y) {
       const InputRows inputs = input_rows(&f, &in, y);
       for (int x = x_begin; x < x_end; x += V) {
@@ -296,10 +329,9 @@ kernel void hidden_light(struct FrameParams f, struct FrameLayouts layouts, glob
         if (!any_bit(mine)) continue;
         const vfloat z = select((vfloat)(1.0f), read_values(inputs.depth, x) * f.mm_per_unit, mine);
         Target target;
-        const Vectors place = {
-            (convert_vfloat(x + int_lane_numbers()) + 0.5f - f.center_x) * fma(z, f.slope_x, f.mm_per_px_x),
-            ((float)y + 0.5f - f.center_y) * fma(z, f.slope_y, f.mm_per_px_y), z};
-        target.at = place;
+        target.at = points_of(&f, z, x, y);
+        Box its_box = empty;
+        include_points(&its_box, &target.at, mine);
         target.normal = normal_at(&f, &inputs, depth, &layouts.depth, mine, m, x, y);
 #if PROJECTED
         make_frame(&target);
@@ -322,11 +354,12 @@ kernel void hidden_light(struct FrameParams f, struct FrameLayouts layouts, glob
 #if WALK
         sum.bent = broadcast_rgb((vfloat)(0.0f));
 #endif
-        for (int i = 0; i < cells.count; ++i) {
-          global const struct HiddenCell* cell = all_cells + its->first_cell + (cells.is_listed ? cells.list[i] : i);
-          for (int level = 0; level < HIDDEN_LEVELS; ++level) {
-            add_samples(&sum, &profile, its, &target, samples + cell->first[level], cell->samples[level], level);
-          }
+        for (int i = 0; i < runs.count; ++i) {
+          const int run = runs.is_listed ? runs.list[i] : i;
+          const int l = run % HIDDEN_LEVELS;
+          global const struct HiddenCell* cell = cells + run / HIDDEN_LEVELS;
+          if (!may_count(&its_box, cell, its->levels + l)) continue;
+          add_samples(&sum, &profile, its, &target, samples + cell->first[l], cell->samples[l], its->levels + l);
         }
         const vrgb squared = product(reciprocal, reciprocal);
         const vrgb light = product(sum.light, squared);

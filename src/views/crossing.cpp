@@ -33,7 +33,7 @@ double bent_share(const Profile& profile, int channel, double mfp_mm) {
 void add_walk(const Profile& profile, params::HiddenMaterial& to) {
   to.crossing = CROSSING_WALK;
   const double step_mm = static_cast<double>(to.reach_mm) / (SLAB_NODES - 1);
-  to.slab_step_mm = static_cast<float>(step_mm);
+  to.slab_nodes_per_mm = static_cast<float>(1 / step_mm);
   for (int c = 0; c < 3; ++c) {
     const double mfp_mm = *profile.mfp_mm(c);
     const double albedo = *profile.scattering_albedo(c);

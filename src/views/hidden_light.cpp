@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <string>
 
 #include "opencl/program.hpp"
@@ -96,7 +97,6 @@ params::ViewParams params_of(const View& view, double mm_per_unit) {
 ViewStats count(const ViewPixels& view) {
   ViewStats stats;
   for (const params::ViewPixel& pixel : view) {
-    if (pixel.material == 0) continue;
     ++(pixel.place == PLACE_SEEN ? stats.seen : stats.hidden);
     if (pixel.place == PLACE_CONTRADICTING) ++stats.contradicting;
   }
@@ -177,19 +177,28 @@ ViewPixels HiddenLight::pixels_of(FrameRun& run, const View& view, double mm_per
   const Images images = images_of(view);
   const ImageBuffers bound(run.context(), view.width, view.height, images);
   const auto buffer = [&](Name name) { return bound.buffer(bound.has(name) ? name : light); };
-  ViewPixels result(static_cast<std::size_t>(view.width) * view.height);
-  const std::size_t bytes = result.size() * sizeof(params::ViewPixel);
+  const std::size_t pixel_count = static_cast<std::size_t>(view.width) * view.height;
+  const std::size_t bytes = pixel_count * sizeof(params::ViewPixel);
   const cl::Buffer pixels(run.context(), CL_MEM_READ_WRITE, bytes);
   const params::ViewLayouts layouts{bound.layout(light), bound.layout(albedo), bound.layout(position),
                                     bound.layout(normal), bound.layout(material)};
-  cl::Kernel kernel(state_->pixels, "view_pixels");
-  set_arguments(kernel, run.frame(), run.images().layouts(), run.images().buffers({ImageName::depth}),
-                run.memory().material_ids, params_of(view, mm_per_unit), layouts, buffer(light), buffer(albedo),
-                buffer(position), buffer(normal), buffer(material), run.materials(), run.run_length(view.width),
-                pixels);
-  run.launch_runs(kernel, view.width, view.height);
+  const params::ViewParams view_params = params_of(view, mm_per_unit);
+  const cl_int columns = run.run_length(view.width);
+  cl::Kernel of_pixels(state_->pixels, "view_pixels");
+  set_arguments(of_pixels, run.frame(), view_params, layouts, buffer(light), buffer(albedo), buffer(position),
+                buffer(normal), buffer(material), run.materials(), columns, pixels);
+  run.launch_runs(of_pixels, view.width, view.height);
+  cl::Kernel of_surface(state_->pixels, "view_surface");
+  set_arguments(of_surface, run.frame(), run.images().layouts(), run.images().buffers({ImageName::depth}),
+                run.memory().material_ids, view_params, columns, pixels);
+  run.launch_runs(of_surface, view.width, view.height);
+  const auto* all =
+      static_cast<const params::ViewPixel*>(run.queue().enqueueMapBuffer(pixels, CL_TRUE, CL_MAP_READ, 0, bytes));
+  ViewPixels result;
+  std::copy_if(all, all + pixel_count, std::back_inserter(result),
+               [](const auto& pixel) { return pixel.material != 0; });
+  run.queue().enqueueUnmapMemObject(pixels, const_cast<params::ViewPixel*>(all));
   run.queue().finish();
-  run.queue().enqueueReadBuffer(pixels, CL_TRUE, 0, bytes, result.data());
   return result;
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <unordered_map>
 #include <utility>
 
@@ -12,13 +13,16 @@ namespace dermis {
 
 namespace {
 
-/// The sides of joined samples, and the distances from which on they count instead of finer ones, as shares of the
-/// reach; from half of such a distance on they count in part.
-constexpr std::array<double, HIDDEN_LEVELS - 1> joined_side = {1.0 / 20, 1.0 / 10};
+/// The side of a cell, as a share of the reach.
+constexpr double cell_side = 1.0 / 5;
+/// So many cubes along an edge of a cell have their samples joined, on each level but the first; each level is made of
+/// the last one. A projected profile is much steeper where it looks along a plane: 2 % off with half the side, 5 % with
+/// the whole.
+constexpr std::array<int, HIDDEN_LEVELS - 1> joined_cubes = {4, 2};
+constexpr std::array<int, HIDDEN_LEVELS - 1> projected_cubes = {8, 4};
+/// The distances from which on joined samples count instead of finer ones, as shares of the reach; from half of such a
+/// distance on they count in part.
 constexpr std::array<double, HIDDEN_LEVELS - 1> joined_from = {4.0 / 20, 6.0 / 10};
-/// A projected profile is much steeper where it looks along a plane: 2 % off with half the side, 5 % with the whole.
-constexpr double projected_side = 0.5;
-constexpr double cell_side = 4.0 / 20;
 
 /// A pixel is split until its parts are no larger than this share of the reach, but into 4 x 4 at most.
 constexpr double largest_part = 1.0 / 80;
@@ -67,7 +71,6 @@ std::vector<Patch> patches_of(const ViewPixels& view) {
   std::vector<Patch> patches;
   std::vector<double> ways;
   for (const params::ViewPixel& pixel : view) {
-    if (pixel.material == 0) continue;
     Patch patch{
         vector_of(pixel.position), vector_of(pixel.normal),   vector_of(pixel.along_x), vector_of(pixel.along_y), 0,
         pixel.material - 1,        pixel.place != PLACE_SEEN, vector_of(pixel.light)};
@@ -157,31 +160,60 @@ class PatchGrid {
   std::unordered_map<Cube, std::vector<std::size_t>, CubeHash> cubes_;
 };
 
-/// A sample before it is sorted into cells.
+/// A patch of hidden surface, with the part of its area that it stands for.
+struct HiddenPatch {
+  const Patch* patch;
+  double area_mm2;
+};
+
+/// Hidden surface that stands for an area. The normal of joined samples is their mean, which is shorter than 1.
 struct Sample {
   Vector at, normal, light;
   double area_mm2;
 };
 
-void split(const Patch& patch, double area_mm2, double reach_mm, std::vector<Sample>& samples) {
-  const double side = std::sqrt(patch.area_mm2);
-  const int parts = std::clamp(static_cast<int>(std::ceil(side / (largest_part * reach_mm))), 1, most_parts);
+/// Into so many parts along an edge a patch is split, until they are no larger than a length.
+int parts_of(const Patch& patch, double largest_mm) {
+  return std::clamp(static_cast<int>(std::ceil(std::sqrt(patch.area_mm2) / largest_mm)), 1, most_parts);
+}
+
+void split(const HiddenPatch& its, double largest_mm, std::vector<Sample>& samples) {
+  const Patch& patch = *its.patch;
+  const int parts = parts_of(patch, largest_mm);
   for (int j = 0; j < parts; ++j) {
     for (int i = 0; i < parts; ++i) {
       const auto offset = [&](int k) { return (k + 0.5) / parts - 0.5; };
       const Vector at = sum(sum(patch.at, patch.along_x, offset(i)), patch.along_y, offset(j));
-      samples.push_back({at, patch.normal, patch.light, area_mm2 / (parts * parts)});
+      samples.push_back({at, patch.normal, patch.light, its.area_mm2 / (parts * parts)});
     }
   }
 }
 
+void store(const Vector& from, float (&to)[3]) {
+  for (int k = 0; k < 3; ++k) to[k] = static_cast<float>(from[k]);
+}
+
 params::HiddenSample params_of(const Sample& sample) {
-  const auto f = [](double value) { return static_cast<float>(value); };
-  return {{f(sample.at[0]), f(sample.at[1]), f(sample.at[2])},
-          f(sample.area_mm2),
-          {f(sample.light[0]), f(sample.light[1]), f(sample.light[2])},
-          {f(sample.normal[0]), f(sample.normal[1]), f(sample.normal[2])},
-          {}};
+  params::HiddenSample result{};
+  store(sample.at, result.position);
+  store(sample.light, result.light);
+  store(sum({}, sample.normal, 1 / length(sample.normal)), result.normal);
+  result.area_mm2 = static_cast<float>(sample.area_mm2);
+  result.parts = 1;
+  return result;
+}
+
+/// The parts are made in the kernel, for there are many.
+params::HiddenSample params_of(const HiddenPatch& its, double reach_mm) {
+  const Patch& patch = *its.patch;
+  const int parts = parts_of(patch, largest_part * reach_mm);
+  params::HiddenSample result = params_of(Sample{patch.at, patch.normal, patch.light, its.area_mm2 / (parts * parts)});
+  result.parts = parts;
+  if (parts == 1) return result;
+  store(sum({}, patch.along_x, 0.5 / parts), result.half_x);
+  store(sum({}, patch.along_y, 0.5 / parts), result.half_y);
+  result.radius_mm = static_cast<float>((length(patch.along_x) + length(patch.along_y)) / 2);
+  return result;
 }
 
 /// The axis that a normal is nearest to, with its sign: samples of both sides of a thin part stay apart.
@@ -193,20 +225,25 @@ int side_of(const Vector& normal) {
   return 2 * axis + (normal[axis] > 0 ? 1 : 0);
 }
 
-/// Joins the samples of each small cube and side to one, at their mean place with their mean light and normal.
-std::vector<Sample> joined(std::span<const Sample> samples, double side_mm) {
-  std::vector<std::pair<std::array<std::int32_t, 4>, const Sample*>> sorted;
-  for (const Sample& sample : samples) {
-    const Cube cube = cube_of(sample.at, side_mm);
-    sorted.push_back({{cube[0], cube[1], cube[2], side_of(sample.normal)}, &sample});
+/// Joins the samples of each small cube and side to one, at their mean place with their mean light and normal. The cell
+/// has so many small cubes along an edge; what sticks out of it, as part of a pixel, counts to those at its faces.
+std::vector<Sample> joined(std::span<const Sample> samples, const Cube& cell, double cell_mm, int cubes) {
+  std::vector<std::uint64_t> sorted;  // by cube and side, which are above the number of the sample
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    std::uint64_t key = 0;
+    for (int k = 0; k < 3; ++k) {
+      const double within = std::floor((samples[i].at[k] / cell_mm - cell[k]) * cubes);
+      key = key * cubes + static_cast<std::uint64_t>(std::clamp(within, 0.0, cubes - 1.0));
+    }
+    sorted.push_back((key * 6 + side_of(samples[i].normal)) << 32U | i);
   }
-  std::stable_sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::sort(sorted.begin(), sorted.end());
   std::vector<Sample> result;
   for (std::size_t i = 0; i < sorted.size();) {
     Sample all{};
-    const auto key = sorted[i].first;
-    for (; i < sorted.size() && sorted[i].first == key; ++i) {
-      const Sample& one = *sorted[i].second;
+    const std::uint64_t key = sorted[i] >> 32U;
+    for (; i < sorted.size() && sorted[i] >> 32U == key; ++i) {
+      const Sample& one = samples[sorted[i] & 0xffffffffU];
       all.at = sum(all.at, one.at, one.area_mm2);
       all.light = sum(all.light, one.light, one.area_mm2);
       all.normal = sum(all.normal, one.normal, one.area_mm2);
@@ -215,48 +252,86 @@ std::vector<Sample> joined(std::span<const Sample> samples, double side_mm) {
     for (int k = 0; k < 3; ++k) {
       all.at[k] /= all.area_mm2;
       all.light[k] /= all.area_mm2;
+      all.normal[k] /= all.area_mm2;
     }
-    const double normal = length(all.normal);
-    for (double& part : all.normal) part /= normal;
     result.push_back(all);
   }
   return result;
 }
 
+/// Makes the box of a cell large enough for a sample.
+void include(const params::HiddenSample& sample, params::HiddenCell& cell) {
+  for (int k = 0; k < 3; ++k) {
+    const float half = static_cast<float>(sample.parts) * (std::abs(sample.half_x[k]) + std::abs(sample.half_y[k]));
+    cell.low[k] = std::min(cell.low[k], sample.position[k] - half);
+    cell.high[k] = std::max(cell.high[k], sample.position[k] + half);
+  }
+}
+
+/// Appends a cell, which has all its samples on each level.
+void append_cell(std::span<const std::pair<Cube, const HiddenPatch*>> patches, const params::HiddenMaterial& material,
+                 HiddenSamples& to) {
+  const double reach_mm = static_cast<double>(material.reach_mm);
+  const double cell_mm = cell_side * reach_mm;
+  const auto& cubes = material.crossing == CROSSING_PROJECTED ? projected_cubes : joined_cubes;
+  params::HiddenCell cell{};
+  std::fill_n(cell.low, 3, std::numeric_limits<float>::infinity());
+  std::fill_n(cell.high, 3, -std::numeric_limits<float>::infinity());
+  std::vector<Sample> samples;
+  const auto begin = [&](int level, std::size_t count) {
+    cell.first[level] = static_cast<int>(to.samples.size());
+    cell.samples[level] = static_cast<int>(count);
+  };
+  begin(0, patches.size());
+  for (const auto& [cube, patch] : patches) {
+    to.samples.push_back(params_of(*patch, reach_mm));
+    include(to.samples.back(), cell);
+    split(*patch, cell_mm / cubes[0] / 2, samples);
+  }
+  for (int level = 1; level < HIDDEN_LEVELS; ++level) {
+    samples = joined(samples, patches.front().first, cell_mm, cubes[level - 1]);
+    begin(level, samples.size());
+    for (const Sample& sample : samples) {
+      to.samples.push_back(params_of(sample));
+      include(to.samples.back(), cell);
+    }
+  }
+  to.cells.push_back(cell);
+}
+
+/// Lets each level pass into the next one between half of a distance and the whole of it.
+void set_levels(params::HiddenMaterial& material) {
+  const double reach_mm = static_cast<double>(material.reach_mm);
+  const auto f = [](double value) { return static_cast<float>(value); };
+  for (params::HiddenLevel& level : material.levels) level = {-1, f(reach_mm * reach_mm), f(reach_mm), 0, 1, 0, 1};
+  for (std::size_t level = 0; level < joined_from.size(); ++level) {
+    const double far_mm2 = std::pow(joined_from[level] * reach_mm, 2);
+    const double near_mm2 = far_mm2 / 4;
+    const double slope = 1 / (far_mm2 - near_mm2);
+    params::HiddenLevel& finer = material.levels[level];
+    params::HiddenLevel& next = material.levels[level + 1];
+    finer.to_mm2 = f(far_mm2);
+    finer.to_mm = f(std::sqrt(far_mm2));
+    finer.fall_slope = f(-slope);
+    finer.fall_offset = f(far_mm2 * slope);
+    next.from_mm2 = f(near_mm2);
+    next.rise_slope = f(slope);
+    next.rise_offset = f(-near_mm2 * slope);
+  }
+}
+
 /// Appends the cells of one material.
-void append_cells(std::vector<Sample>& samples, params::HiddenMaterial material, HiddenSamples& to) {
+void append_cells(std::span<const HiddenPatch> patches, params::HiddenMaterial material, HiddenSamples& to) {
   const double reach_mm = static_cast<double>(material.reach_mm);
   material.first_cell = static_cast<int>(to.cells.size());
-  for (std::size_t level = 0; level < joined_from.size(); ++level) {
-    material.near_mm[level] = static_cast<float>(joined_from[level] / 2 * reach_mm);
-    material.far_mm[level] = static_cast<float>(joined_from[level] * reach_mm);
-  }
-  const double larger = material.crossing == CROSSING_PROJECTED ? projected_side : 1;
-  const double side_mm = cell_side * reach_mm;
-  std::stable_sort(samples.begin(), samples.end(),
-                   [&](const Sample& a, const Sample& b) { return cube_of(a.at, side_mm) < cube_of(b.at, side_mm); });
-  for (std::size_t first = 0; first < samples.size();) {
-    std::size_t last = first;
-    while (last < samples.size() && cube_of(samples[last].at, side_mm) == cube_of(samples[first].at, side_mm)) ++last;
-    const std::span<const Sample> its(samples.data() + first, last - first);
-    params::HiddenCell cell{};
-    for (int k = 0; k < 3; ++k) {
-      const auto [low, high] =
-          std::minmax_element(its.begin(), its.end(), [&](const auto& a, const auto& b) { return a.at[k] < b.at[k]; });
-      cell.low[k] = static_cast<float>(low->at[k]);
-      cell.high[k] = static_cast<float>(high->at[k]);
-    }
-    const auto append = [&to](std::span<const Sample> some, int& begin, int& count) {
-      begin = static_cast<int>(to.samples.size());
-      count = static_cast<int>(some.size());
-      for (const Sample& sample : some) to.samples.push_back(params_of(sample));
-    };
-    append(its, cell.first[0], cell.samples[0]);
-    for (std::size_t level = 0; level < joined_side.size(); ++level) {
-      append(joined(its, joined_side[level] * larger * reach_mm), cell.first[level + 1], cell.samples[level + 1]);
-    }
-    to.cells.push_back(cell);
-    first = last;
+  set_levels(material);
+  const double cell_mm = cell_side * reach_mm;
+  std::vector<std::pair<Cube, const HiddenPatch*>> sorted;
+  for (const HiddenPatch& patch : patches) sorted.emplace_back(cube_of(patch.patch->at, cell_mm), &patch);
+  std::sort(sorted.begin(), sorted.end());  // patches of a cube as they are in the list
+  for (std::size_t first = 0, last = 0; first < sorted.size(); first = last) {
+    while (last < sorted.size() && sorted[last].first == sorted[first].first) ++last;
+    append_cell({sorted.data() + first, last - first}, material, to);
   }
   material.cells = static_cast<int>(to.cells.size()) - material.first_cell;
   to.materials.push_back(material);
@@ -271,7 +346,7 @@ HiddenSamples hidden_samples(std::span<const ViewPixels> views, std::span<const 
   if (views.size() > 1) {
     for (const std::vector<Patch>& its : patches) grids.emplace_back(its);
   }
-  std::vector<std::vector<Sample>> by_material(profiles.size());
+  std::vector<std::vector<HiddenPatch>> by_material(profiles.size());
   for (std::size_t v = 0; v < patches.size(); ++v) {
     for (const Patch& patch : patches[v]) {
       if (!patch.is_hidden) continue;
@@ -279,7 +354,7 @@ HiddenSamples hidden_samples(std::span<const ViewPixels> views, std::span<const 
       for (std::size_t other = 0; other < grids.size(); ++other) {
         if (other != v) density += grids[other].density_at(patch);
       }
-      split(patch, 1 / density, static_cast<double>(profiles[patch.material].reach_mm), by_material[patch.material]);
+      by_material[patch.material].push_back({&patch, 1 / density});
     }
   }
   HiddenSamples result;

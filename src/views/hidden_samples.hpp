@@ -8,7 +8,7 @@
 
 namespace dermis {
 
-/// The pixels of a view, row by row.
+/// The pixels of a view that show a material and its light, row by row.
 using ViewPixels = std::vector<params::ViewPixel>;
 
 /// The hidden samples of all views, sorted for kernels/views/hidden_light.cl.
