@@ -169,6 +169,14 @@ struct HiddenMaterial {
   float slab_gain[SLAB_NODES][4] __attribute__((aligned(16)));  // read as float4, whose last number is not used
 };
 
+// How the light that enters a medium of random walks grows with the curvature of its surface. Other media have a mean
+// free path of 0.
+struct CurvatureParams {
+  float mfp_mm[3];
+  float steeper[3];    // how much more than in proportion a gain grows at first
+  float most_gain[3];  // where all light comes back
+};
+
 // The choices of a run; each member is 0 or 1.
 struct RunFlags {
   int writes_scattered;

@@ -105,6 +105,10 @@ struct Options {
   std::uint32_t seed = 0;  ///< of the rotation, of taps or of discs
   Lighting lighting = Lighting::raw;
   double albedo_mix = 0;  ///< m in 0..1: albedo^m is put in before the passes, albedo^(1-m) after
+  /// More light leaves a medium where its surface bends outwards, and less where it bends inwards: what scatters is the
+  /// light times that gain, by the mean free path of each pixel over its radius of curvature. Counts only for random
+  /// walks, whose mean free path is known, in frames with depth and normals. METHODS.md, "Curvature".
+  bool curvature = true;
   BadPixels bad_pixels = BadPixels::keep;
   bool skip_uniform_light = true;  ///< tiles under uniform light are copied, which may differ in the last bit
   /// Pixels of a tile: a multiple of 16 across; 0 = what suits the device. The result does not depend on it.

@@ -46,7 +46,7 @@ params::RunFlags run_flags(const Plan::State& plan, const Frame& frame, const Bo
       (writes_result && !images.in_place(ImageName::result, ImageName::beauty)) ||
       options.bad_pixels == BadPixels::zero;
   bool defers = !plan.method->by_tiles() || options.bad_pixels == BadPixels::error || has_reuse ||
-                !frame.views.empty() || plan.settings.sums_weights;
+                !frame.views.empty() || plan.settings.sums_weights || plan.settings.has_curvature();
   for (const ImageName input :
        {ImageName::light, ImageName::albedo, ImageName::depth, ImageName::mask, ImageName::matte}) {
     defers = defers || images.output_over(input);
@@ -118,7 +118,45 @@ void FrameRun::classify() {
   set_arguments(choose, frame_, blocks_per_item, plan_.materials, plan_.levels, memory_.blocks, memory_.passes,
                 memory_.counters);
   launch(choose, columns, frame_.blocks_y, 1);
+  if (memory_.sizes.has_curvature) make_entering_light();
   plan_.method->prepare(*this);
+}
+
+void FrameRun::make_entering_light() {
+  using enum ImageName;
+  cl::Kernel bend(program(), "curvature");
+  set_arguments(bend, frame_, images_.layouts(), images_.buffers({depth, normal}), memory_.material_ids,
+                run_length(frame_.width), memory_.curvature);
+  launch_runs(bend, frame_.width, frame_.height);
+  cl::Kernel enter(program(), "entering_light");
+  set_arguments(enter, frame_, images_.layouts(), images_.buffers({light, albedo, mask}), memory_.material_ids,
+                plan_.materials, plan_.curvatures, memory_.curvature, run_length(frame_.width), memory_.entering);
+  launch_runs(enter, frame_.width, frame_.height);
+}
+
+params::FrameLayouts FrameRun::input_layouts() const {
+  params::FrameLayouts layouts = images_.layouts();
+  if (!memory_.sizes.has_curvature) return layouts;
+  constexpr int bytes = sizeof(float);
+  const int stride = size().stride();
+  layouts.light = {.offset = PADDING * bytes,
+                   .row_stride = static_cast<params::Bytes>(3 * bytes) * stride,
+                   .pixel_stride = bytes,
+                   .channel_stride = stride * bytes,
+                   .format = FORMAT_F32,
+                   .padding = 0};
+  return layouts;
+}
+
+std::vector<cl::Buffer> FrameRun::inputs(std::initializer_list<ImageName> names) const {
+  std::vector<cl::Buffer> buffers = images_.buffers(names);
+  if (!memory_.sizes.has_curvature) return buffers;
+  std::size_t i = 0;
+  for (const ImageName name : names) {
+    if (name == ImageName::light) buffers[i] = memory_.entering;
+    ++i;
+  }
+  return buffers;
 }
 
 void FrameRun::scatter(int step) {
@@ -142,7 +180,7 @@ void FrameRun::compare_with_frame_before() {
   if (reuse_ == nullptr) return;
   const ProgramSource& source = plan_.sources.fingerprint;
   cl::Kernel kernel(build_program(plan_.settings.device, source.files, source.options), "fingerprint");
-  set_arguments(kernel, frame_, images_.layouts(), images_.buffers({light, albedo, depth, material, mask, matte}),
+  set_arguments(kernel, frame_, input_layouts(), inputs({light, albedo, depth, material, mask, matte}),
                 frame_.blocks_x, reuse_->fingerprints, flags_.reuses != 0 ? 0 : 1, reuse_->changed);
   launch(kernel, 1, frame_.blocks_y, 1);
 }
@@ -151,7 +189,7 @@ void FrameRun::load_window(const cl::Buffer& window_memory) {
   using enum ImageName;
   const int stride = size().stride();
   cl::Kernel kernel(program(), "prepare");
-  set_arguments(kernel, frame_, images_.layouts(), images_.buffers({light, albedo, depth, mask}), memory_.material_ids,
+  set_arguments(kernel, frame_, input_layouts(), inputs({light, albedo, depth, mask}), memory_.material_ids,
                 plan_.materials, window_, window_memory, run_length(stride), memory_.counters);
   launch_runs(kernel, stride, frame_.height);
 }

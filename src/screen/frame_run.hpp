@@ -56,6 +56,9 @@ class FrameRun {
   const params::RunFlags& flags() const { return flags_; }
   const params::WindowParams& window() const { return window_; }  ///< that is the frame
   const BoundImages& images() const { return images_; }
+  /// The layouts and some buffers of the images that are read to scatter: the light is that which enters.
+  params::FrameLayouts input_layouts() const;
+  std::vector<cl::Buffer> inputs(std::initializer_list<ImageName> names) const;
   const RunMemory& memory() const { return memory_; }
   /// Light after scattering: three planes as large as the frame. Some buffer if flags().defers is 0.
   const cl::Buffer& deferred() const { return deferred_; }
@@ -81,6 +84,8 @@ class FrameRun {
   void write_deferred(const params::TileParams& tiles, const cl::Buffer& kinds);
 
  private:
+  /// Multiplies light by the gain of curvature.
+  void make_entering_light();
   void write_deferred(const params::RunFlags& flags, const params::TileParams& tiles, const cl::Buffer& kinds);
 
   const Plan::State& plan_;

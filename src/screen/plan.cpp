@@ -10,6 +10,7 @@
 #include "opencl/device_cache.hpp"
 #include "opencl/program.hpp"
 #include "screen/check_materials.hpp"
+#include "screen/curvature.hpp"
 #include "screen/frame_images.hpp"
 #include "screen/frame_run.hpp"
 #include "screen/material_tables.hpp"
@@ -125,6 +126,11 @@ std::unique_ptr<Plan::State> build_plan(PlanSettings its_settings) {
   const MaterialTables tables = fit_taps(settings, method, terms);
   state->materials = upload(context, tables.materials);
   state->levels = upload(context, tables.levels);
+  if (settings.has_curvature()) {
+    std::vector<params::CurvatureParams> curvatures;
+    for (const Material& its : settings.materials) curvatures.push_back(curvature_of(its.profile));
+    state->curvatures = upload(context, curvatures);
+  }
   method.upload(context, tables);
   state->classification = classification.get();
   state->program = program.get();

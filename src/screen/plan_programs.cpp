@@ -24,6 +24,7 @@ PlanPrograms plan_programs(const PlanSettings& settings, const ScatterMethod& me
   PlanPrograms programs{{{"classify/classify.cl"}, by_block}, {}, {{"classify/fingerprint.cl"}, by_block}};
   programs.method = method.kernels(terms);
   programs.method.files.emplace_back("frame/finish.cl");
+  if (settings.has_curvature()) programs.method.files.emplace_back("frame/entering_light.cl");
   programs.method.options = options + build_constant("V", method.vector_width()) +
                             build_constant("LIT", settings.options.lighting == Lighting::lit ? 1 : 0) +
                             programs.method.options;

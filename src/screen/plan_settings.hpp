@@ -19,6 +19,8 @@ struct PlanSettings {
   bool has_pixel_width() const;
   /// Whether taps of the vertical pass lie along the shear of the surface.
   bool is_sheared() const;
+  /// Whether the light that enters some material depends on the curvature of its surface.
+  bool has_curvature() const;
   /// Whether a work-item computes one pixel, as on GPUs; else runs of pixels.
   bool item_is_pixel() const;
 };

@@ -27,6 +27,7 @@ struct Plan::State {
   cl::Program program;                              ///< of the method
   cl::Buffer materials;                             ///< MaterialParams
   cl::Buffer levels;                                ///< TapLevelParams
+  cl::Buffer curvatures;                            ///< CurvatureParams, if settings.has_curvature()
   std::shared_ptr<const HiddenLight> hidden_light;  ///< null if frames have no views
   mutable MemoryPool<RunMemory> memories;
 
@@ -35,11 +36,12 @@ struct Plan::State {
 
   RunSizes run_sizes(int width, int height) const {
     const FrameSize frame{width, height};
-    return {frame, method->buffer_bytes(frame)};
+    return {frame, method->buffer_bytes(frame), settings.has_curvature()};
   }
 
   std::size_t scratch_bytes(int width, int height) const {
-    const bool defers = settings.options.bad_pixels == BadPixels::error || !method->by_tiles();
+    const bool defers =
+        settings.options.bad_pixels == BadPixels::error || !method->by_tiles() || settings.has_curvature();
     return run_sizes(width, height).bytes(defers);
   }
 

@@ -17,7 +17,8 @@ std::array<std::size_t, 4> common_bytes(const FrameSize& frame) {
 
 std::size_t RunSizes::bytes(bool defers) const {
   const auto common = common_bytes(frame);
-  const std::size_t sum = std::accumulate(common.begin(), common.end(), defers ? deferred_bytes() : 0);
+  const std::size_t extra = (defers ? deferred_bytes() : 0) + (has_curvature ? 4 * plane_bytes() : 0);
+  const std::size_t sum = std::accumulate(common.begin(), common.end(), extra);
   return std::accumulate(method_bytes.begin(), method_bytes.end(), sum);
 }
 
@@ -28,6 +29,10 @@ RunMemory::RunMemory(const cl::Context& context, const RunSizes& wanted) : sizes
   blocks = allocate(common[1]);
   passes = allocate(common[2]);
   counters = allocate(common[3]);
+  if (sizes.has_curvature) {
+    entering = allocate(3 * sizes.plane_bytes());
+    curvature = allocate(sizes.plane_bytes());
+  }
   for (const std::size_t bytes : sizes.method_bytes) method.push_back(allocate(bytes));
 }
 

@@ -13,8 +13,10 @@ namespace dermis {
 struct RunSizes {
   FrameSize frame;
   std::vector<std::size_t> method_bytes;  ///< of the buffers of the method
+  bool has_curvature = false;             ///< PlanSettings::has_curvature()
 
-  std::size_t deferred_bytes() const { return 3 * frame.plane() * sizeof(float); }
+  std::size_t plane_bytes() const { return frame.plane() * sizeof(float); }
+  std::size_t deferred_bytes() const { return 3 * plane_bytes(); }
   /// The sum over all buffers, with or without that of deferred light.
   std::size_t bytes(bool defers) const;
 
@@ -29,6 +31,8 @@ struct RunMemory {
   cl::Buffer passes;               ///< BlockPasses
   cl::Buffer counters;             ///< RUN_COUNTERS of them
   cl::Buffer deferred;             ///< light that waits for its output: null until it is needed
+  cl::Buffer entering;             ///< light with the gain of curvature; null if there is none
+  cl::Buffer curvature;            ///< 1/mm, of each pixel; null if it is not asked for
   std::vector<cl::Buffer> method;  ///< as ScatterMethod::buffer_bytes lists them
 
   RunMemory(const cl::Context& context, const RunSizes& wanted);

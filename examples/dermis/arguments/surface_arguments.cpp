@@ -30,8 +30,15 @@ void add_view_arguments(CLI::App& app, SurfaceArguments& arguments) {
       ->allow_extra_args(false);
   add_word(app, "--view-factor", arguments.view_factor,
            "principled: the light has what Blender's Principled BSDF puts into it where the camera looks along the "
-           "surface, which is taken out, for light from below has none of it; auto: principled with --view and a "
-           "picture of Blender, else none");
+           "surface, which is taken out, for light from below has none of it; auto: principled for a picture of "
+           "Blender with --view or a random walk, else none");
+  app.add_option_function<std::string>(
+         "--curvature", [&arguments](const std::string& word) { arguments.curvature = word == "on"; },
+         "whether random walks (walk:, skin-walk) give back more light where their surface bends outwards and less "
+         "where it bends inwards, as a path tracer has it; needs normals")
+      ->check(one_of({"on", "off"}))
+      ->type_name("on|off")
+      ->default_str("on");
 }
 
 void check_surface(const SurfaceArguments& arguments) {
@@ -59,6 +66,7 @@ SurfaceRequest request_of(const SurfaceArguments& arguments) {
                          .lighting = arguments.lighting,
                          .views = arguments.views,
                          .view_factor = arguments.view_factor,
+                         .curvature = arguments.curvature,
                          .lights = {},
                          .translucency = arguments.translucency.options};
   if (arguments.translucency.wanted) request.lights.emplace("--lights", arguments.translucency.lights);

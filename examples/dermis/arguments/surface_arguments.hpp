@@ -23,6 +23,7 @@ struct SurfaceArguments {
   std::optional<Lighting> lighting;      ///< none: as the renderer writes it
   std::vector<std::string> views;        ///< files that show surface which the camera does not see
   ViewFactor view_factor = ViewFactor::automatic;
+  bool curvature = true;
   TranslucencyArguments translucency;
 };
 
@@ -35,6 +36,7 @@ struct SurfaceRequest {
   std::optional<Lighting> lighting;  ///< none: as the renderer writes it
   std::vector<std::string> views;    ///< files, "####" in them stands for the picture's number
   ViewFactor view_factor;
+  bool curvature;  ///< whether normals are read for what walks gain by it
   std::optional<LightsFile> lights;  ///< if light is to come through
   TranslucencyOptions translucency;
 };
@@ -42,7 +44,7 @@ struct SurfaceRequest {
 /// Adds the options that a picture is read by, in groups: channels, camera.
 void add_reading_groups(CLI::App& app, SurfaceArguments& arguments);
 
-/// Adds --view and --view-factor.
+/// Adds --view, --view-factor and --curvature.
 void add_view_arguments(CLI::App& app, SurfaceArguments& arguments);
 
 /// Throws Error(usage) for what is missing or contradicts.

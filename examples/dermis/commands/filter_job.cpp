@@ -93,6 +93,7 @@ Options options_of(const FilterArguments& arguments) {
   options.method = method_of(arguments);
   options.disc = disc_options_of(arguments.disc);
   options.taps = design_of(arguments);
+  options.curvature = arguments.surface.curvature;
   options.cache_folder = cache_folder_of(arguments.cache_dir);
   const bool is_tolerance = is_automatic(arguments) && arguments.quality.tolerance;
   if (is_tolerance) options.tolerance = *arguments.quality.tolerance;
@@ -126,6 +127,7 @@ std::string record_of(const FilterArguments& arguments, const FilterJob& job) {
     add("--view", std::filesystem::path(view).filename().string());
   if (arguments.surface.view_factor != ViewFactor::automatic)
     add("--view-factor", name_of(arguments.surface.view_factor));
+  if (!arguments.surface.curvature) add("--curvature", "off");
   if (arguments.surface.lighting) add("--lighting", name_of(*arguments.surface.lighting));
   add("--albedo-mix", options.albedo_mix);
   text += command_text(arguments.surface.translucency);

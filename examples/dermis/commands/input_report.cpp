@@ -144,6 +144,10 @@ void report_input(const SurfaceInput& input, const SurfaceRequest& request, cons
   for (std::size_t i = 0; i < pixels.size(); ++i) report_material(request.profiles[i], pixels[i], input, messages);
   if (const std::string text = text_of(left_out); !text.empty()) messages.input("left out: " + text);
   if (!input.view_factors.empty()) messages.input("view factor: principled, taken out of the light that scatters");
+  if (request.curvature && any_walk(request.profiles))
+    messages.input(input.loaded.normal.empty()
+                       ? "curvature: none, as there are no normals, or it is not known where the camera is"
+                       : "curvature: by the normals, for random walks");
   check_direct_light(input.roles, messages);
   if (left_out.fractional_ids > 0)
     messages.warn(ErrorCode::input_unsupported, "material",

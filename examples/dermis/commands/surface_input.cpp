@@ -75,7 +75,11 @@ SurfaceInput load_surface(exr::Picture& picture, const std::string& path, const 
     input.camera.source = "none, as nothing scatters";
   }
   input.scatters = scatters();
-  if (input.scatters && takes_out_view_factor(request, input.roles)) take_out_view_factor(input, request.profiles);
+  if (input.scatters && request.curvature && any_walk(request.profiles))
+    input.loaded.normal = load_normal_image(picture, input.roles, input.camera);
+  const bool is_asked = request.view_factor != ViewFactor::automatic;
+  if (input.scatters && takes_out_view_factor(request, input.roles) && (is_asked || input.camera.eye))
+    take_out_view_factor(input, request.profiles);
   if (input.scatters) input.loaded_views = load_views(request, path, input.camera, input.lighting);
   for (const LoadedView& loaded : input.loaded_views) input.views.push_back(loaded.view());
   if (request.lights) input.translucency = load_translucency_images(picture, input.roles);

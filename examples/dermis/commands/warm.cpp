@@ -42,7 +42,7 @@ FrameDescription usual_frames(const SurfaceRequest& surface) {
           .mask = false,
           .albedo = true,
           .matte = !surface.mattes.empty(),
-          .normal = false,
+          .normal = surface.curvature && any_walk(surface.profiles),
           .views = !surface.views.empty()};
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -40,7 +41,8 @@ Frame LoadedFrame::frame() const {
           .depth = image_of(depth),
           .material = image_of(material),
           .mask = image_of(mask),
-          .matte = image_of(matte)};
+          .matte = image_of(matte),
+          .normal = image_of(normal)};
 }
 
 std::vector<std::uint8_t> scattering_pixels(const LoadedFrame& loaded, const std::vector<NamedProfile>& profiles) {
@@ -81,7 +83,7 @@ void require_roles(const exr::Picture& picture, const exr::Roles& roles, const s
 
 LoadedFrame load_images(const exr::Picture& picture, const exr::Roles& roles, const std::vector<NamedProfile>& profiles,
                         const std::vector<MatteId>& mattes, const std::filesystem::path& folder) {
-  LoadedFrame loaded{picture.width(), picture.height(), {}, {}, {}, {}, {}, {}, {}};
+  LoadedFrame loaded{picture.width(), picture.height(), {}, {}, {}, {}, {}, {}, {}, {}};
   loaded.light = load_values(picture, roles, Role::light, 3);
   loaded.albedo = load_values(picture, roles, Role::albedo, 3);
   loaded.mask = load_values(picture, roles, Role::mask, 1);
@@ -100,6 +102,26 @@ LoadedFrame load_images(const exr::Picture& picture, const exr::Roles& roles, co
 std::vector<float> load_depth_image(const exr::Picture& picture, const exr::Roles& roles,
                                     const exr::FoundCamera& camera) {
   return checked(exr::load_depth(picture, roles, camera), picture, Role::depth, 1);
+}
+
+bool any_walk(const std::vector<NamedProfile>& profiles) {
+  return std::any_of(profiles.begin(), profiles.end(),
+                     [](const NamedProfile& named) { return named.profile.scattering_albedo(0).has_value(); });
+}
+
+std::vector<float> load_normal_image(const exr::Picture& picture, const exr::Roles& roles,
+                                     const exr::FoundCamera& camera) {
+  if (!roles.has(Role::normal) || !camera.world_to_camera) return {};
+  const std::array<double, 12>& turn = *camera.world_to_camera;
+  std::vector<float> normal = load_values(picture, roles, Role::normal, 3);
+  for (std::size_t i = 0; i < normal.size(); i += 3) {
+    const std::array<double, 3> world = {normal[i], normal[i + 1], normal[i + 2]};
+    for (std::size_t row = 0; row < 3; ++row) {
+      normal[i + row] = static_cast<float>(turn[4 * row] * world[0] + turn[4 * row + 1] * world[1] +
+                                           turn[4 * row + 2] * world[2]);
+    }
+  }
+  return normal;
 }
 
 std::vector<float> load_depth_image(const exr::Picture& picture, const exr::Roles& roles) {

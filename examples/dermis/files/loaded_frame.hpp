@@ -26,6 +26,7 @@ struct LoadedFrame {
   std::vector<float> material;  ///< or empty
   std::vector<float> mask;      ///< or empty
   std::vector<float> matte;     ///< or empty
+  std::vector<float> normal;    ///< XYZ, on the axes of the camera, or empty
   std::string cryptomatte;      ///< the one that material and matte are from, or empty
 
   /// Views of these images, and nothing else of a frame.
@@ -52,6 +53,13 @@ LoadedFrame load_images(const exr::Picture& picture, const exr::Roles& roles, co
 /// The depth of the picture, or that of its positions if it has no other. Throws as load_images.
 std::vector<float> load_depth_image(const exr::Picture& picture, const exr::Roles& roles,
                                     const exr::FoundCamera& camera);
+
+/// Whether the surface of such a material does something to the light that enters by its curvature.
+bool any_walk(const std::vector<NamedProfile>& profiles);
+
+/// The normals of the picture on the axes of the camera; none if it has none, or if it is not known where the camera is.
+std::vector<float> load_normal_image(const exr::Picture& picture, const exr::Roles& roles,
+                                     const exr::FoundCamera& camera);
 
 /// What is known of the depth without a camera: that of the picture, or infinite where there is no position, and 1
 /// elsewhere.

@@ -65,7 +65,8 @@ View LoadedView::view() const {
 
 bool takes_out_view_factor(const SurfaceRequest& request, const exr::Roles& roles) {
   if (request.view_factor != ViewFactor::automatic) return request.view_factor == ViewFactor::principled;
-  return !request.views.empty() && roles.renderer == "blender";
+  return (!request.views.empty() || any_walk(request.profiles)) && roles.renderer == "blender" &&
+         roles.has(exr::Role::normal) && roles.has(exr::Role::position);
 }
 
 std::vector<LoadedView> load_views(const SurfaceRequest& request, const std::string& path,

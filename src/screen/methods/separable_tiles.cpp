@@ -43,8 +43,8 @@ class SeparableTiles final : public SeparableMethod {
     const params::TileParams tile = tiles(run.size());
     const cl::Buffer axes = rotations(run);  // a kernel does not keep its arguments before it is launched
     cl::Kernel kernel(run.program(), "scatter");
-    set_arguments(kernel, run.frame(), run.images().layouts(),
-                  run.images().buffers({light, albedo, depth, mask, matte, beauty, scattered, result}), run.flags(),
+    set_arguments(kernel, run.frame(), run.input_layouts(),
+                  run.inputs({light, albedo, depth, mask, matte, beauty, scattered, result}), run.flags(),
                   run.materials(), run.levels(), taps_at_, taps_, axes, settings_.options.seed, memory.material_ids,
                   memory.blocks, memory.passes, tile, worker_memory(run.size()), memory.method[windows], run.changed(),
                   run.deferred(), memory.method[kinds], memory.counters);
