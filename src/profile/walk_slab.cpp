@@ -69,12 +69,29 @@ SlabLight slab_light(double thickness, double scattering_albedo) {
   return light;
 }
 
+// By Chandrasekhar's H function (sections 35 and 38), 1 / H(m) = s + a / 2 integral of n H(n) / (m + n) dn with
+// s = sqrt(1 - a): a beam returns 1 - s H(m), and light that falls from all sides the mean of that by the cosine law.
 double half_space_light(double scattering_albedo) {
-  // What comes through a thick slab is diffuse as what falls on it, so that a half-space is that slab on a half-space.
-  const auto [transmitted, returned] = slab_light(30, scattering_albedo);
-  double all = returned;
-  for (int i = 0; i < 1000; ++i) all = returned + transmitted * transmitted * all / (1 - returned * all);
-  return std::min(all, 1.0);
+  static const GaussLegendre<nodes> rule;
+  constexpr int iterations = 60;
+  const double root = std::sqrt(1 - scattering_albedo);
+  std::array<double, nodes> h{};
+  h.fill(1);
+  for (int i = 0; i < iterations; ++i) {
+    std::array<double, nodes> next{};
+    for (int m = 0; m < nodes; ++m) {
+      double integral = 0;
+      for (int n = 0; n < nodes; ++n) {
+        integral += rule.weight[n] / 2 * (1 + rule.point[n]) * h[n] / (2 + rule.point[m] + rule.point[n]);
+      }
+      // Half of the step: the whole one goes to and fro where nearly nothing is absorbed.
+      next[m] = (h[m] + 1 / (root + scattering_albedo / 2 * integral)) / 2;
+    }
+    h = next;
+  }
+  double lost = 0;
+  for (int n = 0; n < nodes; ++n) lost += rule.weight[n] / 2 * (1 + rule.point[n]) * h[n];
+  return 1 - root * lost;
 }
 
 }  // namespace dermis

@@ -46,6 +46,7 @@ const std::vector<int> all_widths = {1, 4, 8, 16};
 const std::vector<Group> groups = {
     {{"frame/finish.cl", "separable/tile.cl"}, all_widths, {}},
     {{"frame/prepare.cl", "integral/exact.cl"}, all_widths, {}},
+    {{"frame/entering_light.cl"}, all_widths, {{"HAS_DEPTH", 1}, {"HAS_NORMAL", 1}}},
     {{"frame/prepare.cl", "separable/pixel.cl"}, {1}, {}},
     {{"frame/finish.cl", "integral/disc_texels.cl", "integral/disc.cl"}, {1}, {}},
     {{"classify/classify.cl", "classify/fingerprint.cl"}, {BLOCK}, {}},

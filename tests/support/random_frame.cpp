@@ -10,13 +10,16 @@ namespace {
 
 Profile random_profile(Random& random, bool albedo) {
   const auto length = [&] { return std::exp(random.uniform(std::log(0.1), std::log(1.5))); };
-  switch (random.integer(0, albedo ? 3 : 2)) {
+  switch (random.integer(0, albedo ? 4 : 3)) {
     case 0:
       return dermis::preset("skin").profile;
     case 1:
       return Profile::burley({length(), length(), length()});
     case 2:
       return Profile::gaussians({{length(), {1, 0.5, 0.2}}, {0.1 * length(), {0, 0.5, 0.8}}});
+    case 3:
+      return Profile::random_walk_cycles({10 * length(), 10 * length(), 10 * length()},
+                                  {random.uniform(0.2, 0.9), random.uniform(0.2, 0.9), random.uniform(0.2, 0.9)});
     default:
       return Profile::burley_cycles({10 * length(), 10 * length(), 10 * length()});
   }
@@ -51,11 +54,13 @@ RandomFrame::RandomFrame(Random& random, const RandomFrameChoice& choice) : widt
   const bool with_mask = random.integer(0, 3) == 0;
   const bool with_matte = random.integer(0, 3) == 0;
   const bool with_beauty = random.coin();
+  const bool with_normal = random.coin();
 
   light.emplace(width, height, 3, color_format(), gaps);
   depth.emplace(width, height, 1, Format::f32, gaps);
   scattered.emplace(width, height, 3, color_format(), gaps);
   if (with_albedo) albedo.emplace(width, height, 3, color_format(), gaps);
+  if (with_normal) normal.emplace(width, height, 3, color_format(), gaps);
   if (with_mask) mask.emplace(width, height, 1, color_format(), gaps);
   if (with_matte) matte.emplace(width, height, 1, color_format(), gaps);
 
@@ -106,6 +111,13 @@ RandomFrame::RandomFrame(Random& random, const RandomFrameChoice& choice) : widt
         if (albedo) albedo->set(x, y, c, random.integer(0, 40) == 0 ? 0 : random.uniform(0.1, 1));
         if (beauty) beauty->set(x, y, c, random.uniform(0, 4));
       }
+      if (normal) {
+        // Of any length, here and there of none.
+        const double length = random.integer(0, 50) == 0 ? 0 : random.uniform(0.5, 2);
+        normal->set(x, y, 0, length * 0.5 * std::sin(wave * x));
+        normal->set(x, y, 1, length * 0.7 * std::cos(0.6 * wave * y));
+        normal->set(x, y, 2, -length);
+      }
       if (mask) mask->set(x, y, 0, random.integer(0, 9) == 0 ? 0 : random.uniform(0.3, 1));
       // Pixels are covered in part along the edges of the light, and here and there.
       const bool partial = random.integer(0, 30) == 0 || (x % 9 == 0 && 2 * y < height);
@@ -128,6 +140,7 @@ dermis::Frame RandomFrame::frame() {
   if (material) frame.material = material->image();
   if (mask) frame.mask = mask->image();
   if (matte) frame.matte = matte->image();
+  if (normal) frame.normal = normal->image();
   if (beauty) frame.beauty = beauty->image();
   if (result) frame.result = result->output();
   return frame;

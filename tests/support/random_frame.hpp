@@ -22,7 +22,7 @@ struct RandomFrame {
   int width, height;
   std::vector<dermis::Material> materials;
   dermis::Options options;
-  std::optional<GuardedImage> light, albedo, depth, material, mask, matte, beauty, scattered, result;
+  std::optional<GuardedImage> light, albedo, depth, material, mask, matte, normal, beauty, scattered, result;
   dermis::Camera camera;
   double mm_per_unit = 1;
 

@@ -6,6 +6,7 @@
 
 #include "dermis/oracle/reference.hpp"
 #include "oracle/frame/compose.hpp"
+#include "oracle/frame/entering_light.hpp"
 #include "oracle/frame/frame_images.hpp"
 #include "oracle/frame/rotation.hpp"
 #include "oracle/integral/disc_plane.hpp"
@@ -291,7 +292,8 @@ Reference disc(const Frame& frame, std::span<const Material> materials, const Op
   const Surface surface(frame, images, materials, false);
   const Light light(images, options);
   const BoundedPicture before = light.filtered();
-  const DiscFilter filter(surface, images, materials, options, before);
+  const BoundedPicture entering = entering_light(surface, images, materials, options, before);
+  const DiscFilter filter(surface, images, materials, options, entering);
   BoundedPicture scattered = before;
   for (int y = 0; y < surface.height(); ++y) {
     for (int x = 0; x < surface.width(); ++x) {

@@ -8,6 +8,7 @@
 
 #include "dermis/oracle/reference.hpp"
 #include "oracle/frame/compose.hpp"
+#include "oracle/frame/entering_light.hpp"
 #include "oracle/frame/frame_images.hpp"
 #include "oracle/frame/light.hpp"
 #include "oracle/frame/surface.hpp"
@@ -205,8 +206,8 @@ Reference surface_integral(const Frame& frame, std::span<const Material> materia
   const Surface surface(frame, images, materials, false);
   const Light light(images, options);
   BoundedPicture scattered = light.filtered();
-  const Picture before = scattered.value;
-  const Integral integral(surface, materials, before, finer);
+  const Picture entering = entering_light(surface, images, materials, options, scattered).value;
+  const Integral integral(surface, materials, entering, finer);
   Picture weights(surface.width(), surface.height(), 3);
   for (int y = 0; y < surface.height(); ++y) {
     for (int x = 0; x < surface.width(); ++x) {

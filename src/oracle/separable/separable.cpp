@@ -9,6 +9,7 @@
 #include "dermis/oracle/reference.hpp"
 #include "oracle/classify/block.hpp"
 #include "oracle/frame/compose.hpp"
+#include "oracle/frame/entering_light.hpp"
 #include "oracle/frame/frame_images.hpp"
 #include "oracle/frame/light.hpp"
 #include "oracle/frame/rotation.hpp"
@@ -283,8 +284,9 @@ Reference separable(const Frame& frame, std::span<const Material> materials, con
   const Blocks blocks(surface, materials, may_be_flat(images, materials, options));
   const Light light(images, options);
   const BoundedPicture before = light.filtered();
+  const BoundedPicture entering = entering_light(surface, images, materials, options, before);
   const SeparableFrame both{surface, blocks, materials, frame.camera, options, before};
-  const std::vector<BoundedPicture> inputs(most_terms(materials), before);
+  const std::vector<BoundedPicture> inputs(most_terms(materials), entering);
   std::vector<BoundedPicture> between = inputs;
   Pass(horizontal, both, inputs).run(between);
   BoundedPicture after = before;
