@@ -196,7 +196,7 @@ ViewPixels HiddenLight::pixels_of(FrameRun& run, const View& view, double mm_per
       static_cast<const params::ViewPixel*>(run.queue().enqueueMapBuffer(pixels, CL_TRUE, CL_MAP_READ, 0, bytes));
   ViewPixels result;
   std::copy_if(all, all + pixel_count, std::back_inserter(result),
-               [](const auto& pixel) { return pixel.material != 0; });
+               [](const auto& pixel) { return pixel.material != 0 && pixel.place != PLACE_UNLIT; });
   run.queue().enqueueUnmapMemObject(pixels, const_cast<params::ViewPixel*>(all));
   run.queue().finish();
   return result;

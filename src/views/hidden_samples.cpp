@@ -15,14 +15,20 @@ namespace {
 
 /// The side of a cell, as a share of the reach.
 constexpr double cell_side = 1.0 / 5;
-/// So many cubes along an edge of a cell have their samples joined, on each level but the first; each level is made of
-/// the last one. A projected profile is much steeper where it looks along a plane: 2 % off with half the side, 5 % with
-/// the whole.
-constexpr std::array<int, HIDDEN_LEVELS - 1> joined_cubes = {4, 2};
-constexpr std::array<int, HIDDEN_LEVELS - 1> projected_cubes = {8, 4};
-/// The distances from which on joined samples count instead of finer ones, as shares of the reach; from half of such a
-/// distance on they count in part.
-constexpr std::array<double, HIDDEN_LEVELS - 1> joined_from = {4.0 / 20, 6.0 / 10};
+/// How samples are joined, on each level but the first: so many cubes along an edge of a cell have theirs joined, from
+/// those of the level before; and from such a distance on, as a share of the reach, they count instead of finer ones,
+/// from half of it on in part.
+struct Joining {
+  std::array<int, HIDDEN_LEVELS - 1> cubes;
+  std::array<double, HIDDEN_LEVELS - 1> from;
+};
+constexpr Joining joining = {{4, 2}, {0.15, 0.4}};
+/// A projected profile is much steeper where it looks along a plane.
+constexpr Joining joining_projected = {{8, 4}, {0.2, 0.6}};
+
+const Joining& joining_of(const params::HiddenMaterial& material) {
+  return material.crossing == CROSSING_PROJECTED ? joining_projected : joining;
+}
 
 /// A pixel is split until its parts are no larger than this share of the reach, but into 4 x 4 at most.
 constexpr double largest_part = 1.0 / 80;
@@ -273,7 +279,7 @@ void append_cell(std::span<const std::pair<Cube, const HiddenPatch*>> patches, c
                  HiddenSamples& to) {
   const double reach_mm = static_cast<double>(material.reach_mm);
   const double cell_mm = cell_side * reach_mm;
-  const auto& cubes = material.crossing == CROSSING_PROJECTED ? projected_cubes : joined_cubes;
+  const auto& cubes = joining_of(material).cubes;
   params::HiddenCell cell{};
   std::fill_n(cell.low, 3, std::numeric_limits<float>::infinity());
   std::fill_n(cell.high, 3, -std::numeric_limits<float>::infinity());
@@ -304,8 +310,8 @@ void set_levels(params::HiddenMaterial& material) {
   const double reach_mm = static_cast<double>(material.reach_mm);
   const auto f = [](double value) { return static_cast<float>(value); };
   for (params::HiddenLevel& level : material.levels) level = {-1, f(reach_mm * reach_mm), f(reach_mm), 0, 1, 0, 1};
-  for (std::size_t level = 0; level < joined_from.size(); ++level) {
-    const double far_mm2 = std::pow(joined_from[level] * reach_mm, 2);
+  for (int level = 0; level < HIDDEN_LEVELS - 1; ++level) {
+    const double far_mm2 = std::pow(joining_of(material).from[level] * reach_mm, 2);
     const double near_mm2 = far_mm2 / 4;
     const double slope = 1 / (far_mm2 - near_mm2);
     params::HiddenLevel& finer = material.levels[level];
