@@ -121,7 +121,8 @@ struct Frame {
   Image matte = {};
   /// 3 channels, f16 or f32, of any length: across the surface, towards the camera, on axes to the right, down and away
   /// from it. Method::disc takes the plane of its discs from it; where it is not finite or faces away, from depth.
-  /// Random walks take the curvature of the surface from it (Options::curvature); where it is not finite, there is none.
+  /// Random walks take the curvature of the surface from it (Options::curvature); where it is not finite, there is
+  /// none.
   Image normal = {};
   Image beauty = {};  ///< RGB, f16 or f32: the picture with all its light; needed for `result`
   Camera camera = {};

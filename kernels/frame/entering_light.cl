@@ -45,7 +45,7 @@ static inline Facets facets_at(const SurfaceImages* images, int x, int y) {
 
 // How points and normals change with one pixel along an axis.
 typedef struct {
-  Tangent point;   // pixels
+  Tangent point;  // pixels
   Tangent normal;
 } Change;
 
@@ -148,7 +148,8 @@ static inline vfloat gain_of(vfloat bend, float steeper, float most_gain) {
   const vfloat inwards = lower(bend, (vfloat)(0.0f));
   const vfloat first = GAIN_PER_BEND * outwards * fma(outwards, (vfloat)(steeper), (vfloat)(1.0f));
   const vfloat share = first / most_gain;
-  return (1.0f + first / sqrt(fma(share, share, (vfloat)(1.0f)))) / fma((vfloat)(-GAIN_PER_BEND), inwards, (vfloat)(1.0f));
+  return (1.0f + first / sqrt(fma(share, share, (vfloat)(1.0f)))) /
+         fma((vfloat)(-GAIN_PER_BEND), inwards, (vfloat)(1.0f));
 }
 
 // The mean curvature over the pixels of the material `mine` about (x, y): bumps of a pixel bend no surface.

@@ -30,7 +30,7 @@ constexpr double nearly_parallel = 1e-3;  // half the change of size from the fr
 constexpr double least_relief = 0.01;
 constexpr double least_relief_over_noise = 10;
 constexpr std::size_t refined_starts = 3;
-constexpr std::size_t few = 2000;  // points that a fit is sought with before all refine it
+constexpr std::size_t few = 2000;   // points that a fit is sought with before all refine it
 constexpr double known_well = 0.1;  // of the doubt that is allowed: all points need not refine that
 
 bool is_good(const std::optional<Fit>& fit, double half_px) {

@@ -180,8 +180,8 @@ void FrameRun::compare_with_frame_before() {
   if (reuse_ == nullptr) return;
   const ProgramSource& source = plan_.sources.fingerprint;
   cl::Kernel kernel(build_program(plan_.settings.device, source.files, source.options), "fingerprint");
-  set_arguments(kernel, frame_, input_layouts(), inputs({light, albedo, depth, material, mask, matte}),
-                frame_.blocks_x, reuse_->fingerprints, flags_.reuses != 0 ? 0 : 1, reuse_->changed);
+  set_arguments(kernel, frame_, input_layouts(), inputs({light, albedo, depth, material, mask, matte}), frame_.blocks_x,
+                reuse_->fingerprints, flags_.reuses != 0 ? 0 : 1, reuse_->changed);
   launch(kernel, 1, frame_.blocks_y, 1);
 }
 

@@ -161,7 +161,8 @@ TEST_CASE("what is not curved, or no random walk, or not asked to, has no gain")
   Sphere flat;
   for (std::size_t i = 0; i < flat.normal.size(); ++i) flat.normal[i] = i % 3 == 2 ? -1.0F : 0.25F;
   CHECK(scattered(flat, walk, true) == scattered(Sphere(), walk, false));
-  CHECK(scattered(Sphere(), Profile::burley({1, 1, 1}), true) == scattered(Sphere(), Profile::burley({1, 1, 1}), false));
+  CHECK(scattered(Sphere(), Profile::burley({1, 1, 1}), true) ==
+        scattered(Sphere(), Profile::burley({1, 1, 1}), false));
   CHECK(scattered(Sphere(), walk, true) != scattered(Sphere(), walk, false));
   Sphere without;
   for (float& value : without.normal) value = NAN;

@@ -18,8 +18,9 @@ Profile random_profile(Random& random, bool albedo) {
     case 2:
       return Profile::gaussians({{length(), {1, 0.5, 0.2}}, {0.1 * length(), {0, 0.5, 0.8}}});
     case 3:
-      return Profile::random_walk_cycles({10 * length(), 10 * length(), 10 * length()},
-                                  {random.uniform(0.2, 0.9), random.uniform(0.2, 0.9), random.uniform(0.2, 0.9)});
+      return Profile::random_walk_cycles(
+          {10 * length(), 10 * length(), 10 * length()},
+          {random.uniform(0.2, 0.9), random.uniform(0.2, 0.9), random.uniform(0.2, 0.9)});
     default:
       return Profile::burley_cycles({10 * length(), 10 * length(), 10 * length()});
   }

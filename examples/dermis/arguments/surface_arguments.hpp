@@ -36,7 +36,7 @@ struct SurfaceRequest {
   std::optional<Lighting> lighting;  ///< none: as the renderer writes it
   std::vector<std::string> views;    ///< files, "####" in them stands for the picture's number
   ViewFactor view_factor;
-  bool curvature;  ///< whether normals are read for what walks gain by it
+  bool curvature;                    ///< whether normals are read for what walks gain by it
   std::optional<LightsFile> lights;  ///< if light is to come through
   TranslucencyOptions translucency;
 };

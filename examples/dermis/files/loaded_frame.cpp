@@ -117,8 +117,8 @@ std::vector<float> load_normal_image(const exr::Picture& picture, const exr::Rol
   for (std::size_t i = 0; i < normal.size(); i += 3) {
     const std::array<double, 3> world = {normal[i], normal[i + 1], normal[i + 2]};
     for (std::size_t row = 0; row < 3; ++row) {
-      normal[i + row] = static_cast<float>(turn[4 * row] * world[0] + turn[4 * row + 1] * world[1] +
-                                           turn[4 * row + 2] * world[2]);
+      normal[i + row] =
+          static_cast<float>(turn[4 * row] * world[0] + turn[4 * row + 1] * world[1] + turn[4 * row + 2] * world[2]);
     }
   }
   return normal;

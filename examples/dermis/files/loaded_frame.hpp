@@ -57,7 +57,8 @@ std::vector<float> load_depth_image(const exr::Picture& picture, const exr::Role
 /// Whether the surface of such a material does something to the light that enters by its curvature.
 bool any_walk(const std::vector<NamedProfile>& profiles);
 
-/// The normals of the picture on the axes of the camera; none if it has none, or if it is not known where the camera is.
+/// The normals of the picture on the axes of the camera; none if it has none, or if it is not known where the camera
+/// is.
 std::vector<float> load_normal_image(const exr::Picture& picture, const exr::Roles& roles,
                                      const exr::FoundCamera& camera);
 

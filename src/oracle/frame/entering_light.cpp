@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <numbers>
 #include <optional>
 #include <vector>
 
@@ -16,6 +17,7 @@ namespace {
 constexpr double gain_per_bend = 1.35;
 constexpr double least_sine2 = 1e-2;
 constexpr double farthest2 = 1e15;  // squared pixels
+using std::numbers::pi;
 
 using Vector = std::array<Bounded, 3>;
 
@@ -180,7 +182,13 @@ double returned_light(double scattering_albedo) {
   }
   double moment = 0;
   for (std::size_t j = 0; j < rule.size(); ++j) moment += rule[j].weight * (rule[j].position + 0.5) * h[j];
-  return 1 - 2 * root * moment;
+  // Walks that end after 255 scatterings return less. The share whose number of scatterings is n falls as n^-3/2 and
+  // by what each of them absorbs; its integral from 255 on is by parts.
+  constexpr double longest = 255;
+  const double rate = -std::log(std::max(scattering_albedo, 0.1));
+  const double tail = 2 / std::sqrt(longest) * std::exp(-rate * longest) -
+                      2 * std::sqrt(pi * rate) * std::erfc(std::sqrt(rate * longest));
+  return 1 - 2 * root * moment - 2 / std::sqrt(3 * pi) * tail;
 }
 
 BoundedPicture entering_light(const Surface& surface, const FrameImages& images, std::span<const Material> materials,

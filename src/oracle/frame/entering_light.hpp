@@ -10,8 +10,8 @@
 
 namespace dermis::oracle {
 
-/// Returns the share of the light falling on a half-space that comes back, if a scattering leaves `scattering_albedo`
-/// and light enters by the cosine law (Chandrasekhar 1960, sections 35 and 38).
+/// Returns the share of the light falling on a half-space that comes back by 255 scatterings or fewer, if each leaves
+/// `scattering_albedo` and light enters by the cosine law (Chandrasekhar 1960, sections 35 and 38).
 double returned_light(double scattering_albedo);
 
 /// Returns `light` times the gain of the curvature H where a material has a WalkMedium and the frame depth and normals
