@@ -34,7 +34,8 @@ static inline Facets facets_at(const SurfaceImages* images, int x, int y) {
   const vfloat largest = higher(higher(fabs(n.r), fabs(n.g)), fabs(n.b));
   const vint good = AS_MASK(there != 0) & is_finite(n) & AS_MASK(largest > 0.0f);
   const vfloat safe = select((vfloat)(1.0f), largest, good);
-  const Tangent direction = {n.r / safe, n.g / safe, n.b / safe};
+  const Tangent direction = {select_or_zero(good, n.r / safe), select_or_zero(good, n.g / safe),
+                             select_or_zero(good, n.b / safe)};
   const vfloat length = sqrt(select((vfloat)(1.0f), squared_length(direction), good));
   const vfloat depth = read_values(row_of(images->depth, &images->layouts->depth, f->width, row, 0), x);
   const Facets facets = {there & good,

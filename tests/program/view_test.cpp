@@ -229,3 +229,22 @@ TEST_CASE("each picture of a sequence has its own view, and warm knows them") {
   warm_for.push_back(ball.scene.path);
   CHECK(run_well(warm_for).starts_with("ready after "));
 }
+
+TEST_CASE("a random walk gains by the curvature that normals tell, and the program says so") {
+  const Ball ball;
+  const auto filter = [&](const std::string& output, const std::string& profile, Words more) {
+    more.insert(more.begin(), {"--material", "1=" + profile, "--quality", "draft"});
+    return run_program(filter_arguments({ball.scene.path, ball.scene.camera}, ball.folder / output, more));
+  };
+  const std::string walk = "walk:9/6/4,albedo=0.8/0.6/0.4";
+  const Outcome with = filter("with.exr", walk, {});
+  CHECK(with.exit_code == 0);
+  CHECK(has(with.err, "curvature: by the normals"));
+  const Outcome off = filter("off.exr", walk, {"--curvature", "off"});
+  CHECK_FALSE(has(off.err, "curvature"));
+  CHECK(ball.off("with.exr", "off.exr") > 0.01);
+  const Outcome without = filter("without.exr", walk, {"--role", "normal="});
+  CHECK(has(without.err, "curvature: none, as there are no normals"));
+  CHECK(ball.off("without.exr", "off.exr") == 0);
+  CHECK_FALSE(has(filter("burley.exr", "burley:9/6/4,cycles", {}).err, "curvature"));
+}

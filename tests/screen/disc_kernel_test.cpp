@@ -52,7 +52,10 @@ TEST_CASE("discs equal the oracle within float rounding", "[disc][kernels]") {
     choose_discs(random, random_frame);
     Frame frame = random_frame.frame();
     const GuardedImage normals = random_normals(random, width, height);
-    if (random.coin()) frame.normal = normals.image();
+    if (random.coin()) {
+      frame.normal = normals.image();
+      random_frame.options.curvature = false;  // Between normals that leap, float32 hardly tells it.
+    }
     const dermis::DiscOptions& disc = random_frame.options.disc;
     CAPTURE(test_seed(), round, width, height, disc.samples, disc.tangent_plane, disc.prefiltered, disc.accumulate);
     const auto materials =

@@ -113,8 +113,9 @@ RandomFrame::RandomFrame(Random& random, const RandomFrameChoice& choice) : widt
         if (beauty) beauty->set(x, y, c, random.uniform(0, 4));
       }
       if (normal) {
-        // Of any length, here and there of none.
-        const double length = random.integer(0, 50) == 0 ? 0 : random.uniform(0.5, 2);
+        // Of any length, here and there of none or not a number.
+        const int kind = random.integer(0, 60);
+        const double length = kind == 0 ? 0 : kind == 1 ? NAN : random.uniform(0.5, 2);
         normal->set(x, y, 0, length * 0.5 * std::sin(wave * x));
         normal->set(x, y, 1, length * 0.7 * std::cos(0.6 * wave * y));
         normal->set(x, y, 2, -length);
