@@ -31,7 +31,7 @@ struct RunMemory {
   cl::Buffer deferred;             ///< light that waits for its output: null until it is needed
   std::vector<cl::Buffer> method;  ///< as ScatterMethod::buffer_bytes lists them
 
-  RunMemory(const cl::Context& context, const RunSizes& wanted);
+  RunMemory(const cl::Context& context, RunSizes wanted);
   void need_deferred(const cl::Context& context);
 };
 

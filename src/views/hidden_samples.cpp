@@ -225,7 +225,7 @@ std::vector<Sample> joined(std::span<const Sample> samples, double side_mm) {
 
 /// Appends the cells of one material.
 void append_cells(std::vector<Sample>& samples, params::HiddenMaterial material, HiddenSamples& to) {
-  const double reach_mm = static_cast<double>(material.reach_mm);
+  const auto reach_mm = static_cast<double>(material.reach_mm);
   material.first_cell = static_cast<int>(to.cells.size());
   for (std::size_t level = 0; level < joined_from.size(); ++level) {
     material.near_mm[level] = static_cast<float>(joined_from[level] / 2 * reach_mm);
