@@ -86,9 +86,11 @@ double stretch_of(const Picture& picture, const Roles& roles, const FoundCamera&
   const auto width = static_cast<std::size_t>(picture.width());
   const Camera& camera = found.camera;
   const auto from_depth = [&](std::size_t i) {
+    const std::size_t column = i % width;
+    const std::size_t row = i / width;
     const double reach = camera.projection == Camera::Projection::perspective ? static_cast<double>(depth[i]) : 1;
-    return std::array{reach * (static_cast<double>(i % width) - camera.center_x) / camera.scale_x,
-                      reach * (static_cast<double>(i / width) - camera.center_y) / camera.scale_y,
+    return std::array{reach * (static_cast<double>(column) - camera.center_x) / camera.scale_x,
+                      reach * (static_cast<double>(row) - camera.center_y) / camera.scale_y,
                       static_cast<double>(depth[i])};
   };
   const std::size_t step = width * (1 + depth.size() / width / 8) + width / 8;

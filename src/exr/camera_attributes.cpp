@@ -149,11 +149,6 @@ Eigen::Vector2d pixel_of(const Picture& picture, const Matrix& projection, const
   return {display.x - data.x + at.x() * display.width, display.y - data.y + at.y() * display.height};
 }
 
-Eigen::Vector2d pixel_at(const Picture& picture, std::size_t i) {
-  const auto width = static_cast<std::size_t>(picture.width());
-  return {static_cast<double>(i % width) + 0.5, static_cast<double>(i / width) + 0.5};
-}
-
 }  // namespace
 
 Camera centred_camera(const Picture& picture, double focal_px) {
@@ -212,7 +207,8 @@ std::optional<ViewAxis> axis_of_positions(const Picture& picture, std::span<cons
       const float* p = &positions[3 * i];
       if (!is_surface_position(p)) continue;
       const Eigen::RowVector4d point(p[0], p[1], p[2], 1);
-      const Eigen::Vector2d off = pixel_of(picture, projection, point * space_to_ndc) - pixel_at(picture, i);
+      const Eigen::Vector2d off =
+          pixel_of(picture, projection, point * space_to_ndc) - middle_of_pixel(i, picture.width());
       off_px.push_back(std::isfinite(off.norm()) ? off.norm() : HUGE_VAL);
       along.push_back((point * space_to_camera).z());
     }

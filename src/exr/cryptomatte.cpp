@@ -102,8 +102,8 @@ std::vector<RankedMatte> ranked_mattes(const Catalogue& catalogue, const std::ma
 int order_of(const RankedMatte& matte) {
   constexpr std::array<std::string_view, 3> kinds = {"material", "asset", "object"};
   const std::string name = lower(matte.name);
-  const auto* const kind =
-      std::find_if(kinds.begin(), kinds.end(), [&](std::string_view text) { return name.find(text) != name.npos; });
+  const auto* const kind = std::find_if(kinds.begin(), kinds.end(),
+                                        [&](std::string_view text) { return name.find(text) != std::string::npos; });
   return static_cast<int>(kind - kinds.begin());
 }
 
@@ -138,7 +138,7 @@ std::vector<std::string> unescaped_names(std::string_view manifest) {
   constexpr std::size_t digits = 8;
   std::vector<std::string> names;
   std::size_t start = 2;
-  for (std::size_t at = manifest.find(between, start); at != manifest.npos; at = manifest.find(between, at)) {
+  for (std::size_t at = manifest.find(between, start); at != std::string_view::npos; at = manifest.find(between, at)) {
     const std::string_view id = manifest.substr(at + between.size(), digits + 1);
     at += between.size();
     if (id.find_first_not_of("0123456789abcdefABCDEF") != digits || id[digits] != '"') continue;

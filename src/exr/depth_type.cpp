@@ -54,10 +54,9 @@ void convert(std::vector<float>& depth, int width, const Camera& camera, const D
   const bool is_distance = type.kind == DepthKind::distance && camera.projection == Camera::Projection::perspective;
   for (std::size_t i = 0; i < depth.size(); ++i) {
     const float value = unfolded(depth[i], type);
-    const double x =
-        (static_cast<double>(i % static_cast<std::size_t>(width)) + 0.5 - camera.center_x) / camera.scale_x;
-    const double y =
-        (static_cast<double>(i / static_cast<std::size_t>(width)) + 0.5 - camera.center_y) / camera.scale_y;
+    const Eigen::Vector2d middle = middle_of_pixel(i, width);
+    const double x = (middle.x() - camera.center_x) / camera.scale_x;
+    const double y = (middle.y() - camera.center_y) / camera.scale_y;
     depth[i] = is_distance ? static_cast<float>(value / std::sqrt(1 + x * x + y * y)) : value;
   }
 }

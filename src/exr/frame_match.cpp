@@ -36,15 +36,13 @@ std::vector<Compared> compared_pixels(const Picture& picture, const Roles& roles
   const double depth_step = coarsest_step(picture, roles[Role::depth]);
   const double position_step = coarsest_step(picture, roles[Role::position]);
   const double range = std::abs(camera.depth_type.far - camera.depth_type.near);  // 0 unless normalised
-  const auto width = static_cast<std::size_t>(picture.width());
   std::vector<Compared> out;
   for (std::size_t i = 0; i < depth.size(); ++i) {
     const float* p = &position[3 * i];
     if (!is_surface_position(p) || !std::isfinite(depth[i])) continue;
     const Eigen::Vector3d world(p[0], p[1], p[2]);
     const Eigen::Vector3d point = (world - points.origin) / points.unit;
-    const Eigen::Vector2d pixel_px(static_cast<double>(i % width) + 0.5, static_cast<double>(i / width) + 0.5);
-    const double off_px = (fit.projection.pixel_px(point) - pixel_px).norm();
+    const double off_px = (fit.projection.pixel_px(point) - middle_of_pixel(i, picture.width())).norm();
     if (!(off_px <= 1 + errors_allowed * fit.off_px)) continue;
     const double expected =
         Eigen::Vector3d(axis.direction[0], axis.direction[1], axis.direction[2]).dot(world) + axis.offset;
@@ -58,6 +56,7 @@ std::vector<Compared> compared_pixels(const Picture& picture, const Roles& roles
 /// Parallel rays do not tell where depths begin.
 void take_out_constant(std::vector<Compared>& pixels) {
   std::vector<double> differences;
+  differences.reserve(pixels.size());
   for (const Compared& its : pixels) differences.push_back(its.difference);
   const double constant = median(std::move(differences));
   for (Compared& its : pixels) its.difference -= constant;

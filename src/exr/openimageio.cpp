@@ -31,7 +31,7 @@ struct SpecAttributes final : PictureAttributes {
   std::shared_ptr<PictureAttributes> copy() const override { return std::make_shared<SpecAttributes>(spec); }
 };
 
-Format format_of(OIIO::TypeDesc type) {
+Format format_of(const OIIO::TypeDesc& type) {
   switch (type.basetype) {
     case OIIO::TypeDesc::HALF:
       return Format::f16;

@@ -49,13 +49,13 @@ bool is_nan_half(std::uint16_t half) { return (half & 0x7FFFU) > 0x7C00U; }
 
 /// What is no number keeps its bits, of which there are many, if it stays none.
 void put(std::byte* place, float value) {
-  float before;
+  float before = 0;
   std::memcpy(&before, place, sizeof before);
   if (before != value && !(std::isnan(before) && std::isnan(value))) std::memcpy(place, &value, sizeof value);
 }
 
 void put(std::byte* place, std::uint16_t half) {
-  std::uint16_t before;
+  std::uint16_t before = 0;
   std::memcpy(&before, place, sizeof before);
   if (!(is_nan_half(before) && is_nan_half(half))) std::memcpy(place, &half, sizeof half);
 }

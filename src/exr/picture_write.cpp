@@ -82,6 +82,7 @@ void Picture::write(const std::filesystem::path& path, std::string_view compress
   if (parts.empty())
     throw Error(ErrorCode::output, escaped(path.string()), "a picture without channels", "a channel at least");
   std::vector<PartDescription> descriptions;
+  descriptions.reserve(parts.size());
   for (const PartToWrite& part : parts) descriptions.push_back(part.description);
   TemporaryFile file(path);
   try {

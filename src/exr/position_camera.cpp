@@ -259,11 +259,9 @@ class Finding {
 
   std::string reason() const {
     std::string why;
-    if (!free_) {
-      why = "all points on one plane";
-    } else if (!is_good(free_)) {
+    if (free_ && !is_good(free_)) {
       why = "off by " + short_text(free_->off_px) + " px in the median";
-    } else if (is_flat()) {
+    } else if (!free_ || is_flat()) {
       why = "all points on one plane";
     } else {
       why = "too flat for its distance, the focal length would be known to " +
@@ -333,10 +331,7 @@ class Finding {
       origin = projection.from_eye(Eigen::Vector3d::Zero()) * points_.unit - turn * points_.origin;
     }
     std::array<double, 12> rows{};
-    for (int i = 0; i < 3; ++i) {
-      for (int j = 0; j < 3; ++j) rows[static_cast<std::size_t>(4 * i + j)] = turn(i, j);
-      rows[static_cast<std::size_t>(4 * i + 3)] = origin(i);
-    }
+    Eigen::Map<Eigen::Matrix<double, 3, 4, Eigen::RowMajor>>(rows.data()) << turn, origin;
     return rows;
   }
 

@@ -61,8 +61,9 @@ std::array<double, 2> extents_of(const std::vector<Eigen::Vector3d>& points) {
   for (const Eigen::Vector3d& point : points) squares += (point - middle) * (point - middle).transpose();
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(squares);
   std::array<double, 2> extents{};
-  for (const int k : {0, 1}) {
+  for (const Eigen::Index k : {0, 1}) {
     std::vector<double> along;
+    along.reserve(points.size());
     for (const Eigen::Vector3d& point : points) along.push_back(eigen.eigenvectors().col(2 * k).dot(point));
     std::sort(along.begin(), along.end());
     const std::size_t outer = along.size() / 50;
@@ -73,8 +74,8 @@ std::array<double, 2> extents_of(const std::vector<Eigen::Vector3d>& points) {
 
 class Fitting {
  public:
-  Fitting(const SeenPoints& points, const Projection& start, const FitModel& model)
-      : points_(points), model_(model), now_(start), uses_depth_(model.depth != FitModel::Depth::unused) {
+  Fitting(const SeenPoints& points, Projection start, const FitModel& model)
+      : points_(points), model_(model), now_(std::move(start)), uses_depth_(model.depth != FitModel::Depth::unused) {
     if (model.is_parallel) {
       now_.closeness = 0;
       now_.slant.setZero();
@@ -178,6 +179,7 @@ class Fitting {
     noise_px_ = std::max({excess_px_, 0.3 * rounding, 1e-7});
   }
 
+  /// Tukey's biweight of an error, by its square in standard deviations.
   static double weight_of(double squared) {
     const double u = squared / (tukey_width * tukey_width);
     return u < 1 ? (1 - u) * (1 - u) : 0;
@@ -219,7 +221,7 @@ class Fitting {
       // Eigen's product of matrices of any size would take most of the time.
       out.matrix += (weight / at) * errors.slope.transpose().lazyProduct(errors.slope);
       out.gradient += gradient;
-      out.by_patch[static_cast<std::size_t>(points_.patch[i])] += gradient;
+      out.by_patch[points_.patch[i]] += gradient;
       out.squares += weight * squared;
       out.weights += weight;
     }
@@ -257,7 +259,7 @@ class Fitting {
   }
 
   /// The covariance of the parameters: that of errors which depend on each other within a patch.
-  Matrix covariance(const Normal& all) const {
+  static Matrix covariance(const Normal& all) {
     const Vector unit = all.matrix.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
     const Eigen::SelfAdjointEigenSolver<Matrix> eigen(Matrix(unit.asDiagonal() * all.matrix * unit.asDiagonal()));
     const Vector inverse = eigen.eigenvalues().cwiseMax(1e-15).cwiseInverse();

@@ -201,6 +201,17 @@ const Renderer* likeliest_renderer(const Catalogue& catalogue, std::string_view 
   return best;
 }
 
+/// The passes of the layer, by the names of the renderer, or else by those that mean the same whoever writes them.
+void find_passes(const Catalogue& catalogue, const Renderer& renderer, Roles& roles) {
+  for (const Renderer* names : {&renderer, &any_renderer}) {
+    for (const RoleInfo& info : role_table) {
+      if (roles.has(info.role)) continue;
+      roles[info.role] = find_role(catalogue, roles.layer, *names, info.role);
+      if (roles.has(info.role)) roles.rules[static_cast<std::size_t>(info.role)] = names->name;
+    }
+  }
+}
+
 void check_view(const Picture& picture, std::string_view view) {
   if (view.empty()) return;
   const std::vector<std::string> views = picture.views();
@@ -238,13 +249,7 @@ Roles find_roles(const Picture& picture, const RoleRequest& request) {
   roles.view = request.view.empty() && !views.empty() ? views.front() : request.view;
   roles.layer =
       request.layer.empty() ? chosen_layer(catalogue, renderer) : named_layer(catalogue, renderer, request.layer);
-  for (const Renderer* names : {&renderer, &any_renderer}) {
-    for (const RoleInfo& info : role_table) {
-      if (roles.has(info.role)) continue;
-      roles[info.role] = find_role(catalogue, roles.layer, *names, info.role);
-      if (roles.has(info.role)) roles.rules[static_cast<std::size_t>(info.role)] = names->name;
-    }
-  }
+  find_passes(catalogue, renderer, roles);
   if (roles.has(Role::light)) {
     roles.renderer = renderer.name;
     roles.lighting = renderer.lighting;

@@ -64,8 +64,8 @@ void divide_into_patches(SeenPoints& points) {
   const Eigen::Vector2d sides = (most - least).cwiseMax(1) * (1 + 1e-9);
   points.half_px = sides.maxCoeff() / 2;
   for (const Eigen::Vector2d& pixel : points.pixel_px) {
-    const Eigen::Vector2d at = (pixel - least).cwiseQuotient(sides) * patches_per_side;
-    points.patch.push_back(static_cast<int>(at.y()) * patches_per_side + static_cast<int>(at.x()));
+    const Eigen::Vector2d at = (pixel - least).cwiseQuotient(sides) * double{patches_per_side};
+    points.patch.push_back(static_cast<std::size_t>(at.y()) * patches_per_side + static_cast<std::size_t>(at.x()));
   }
 }
 
@@ -84,6 +84,12 @@ bool is_surface_position(const float* position) {
     is_anywhere = is_anywhere || size > 0;  // Cycles writes zeros where there is nothing.
   }
   return is_anywhere;
+}
+
+Eigen::Vector2d middle_of_pixel(std::size_t pixel, int width) {
+  const std::size_t column = pixel % static_cast<std::size_t>(width);
+  const std::size_t row = pixel / static_cast<std::size_t>(width);
+  return {static_cast<double>(column) + 0.5, static_cast<double>(row) + 0.5};
 }
 
 bool is_lossy(const Picture& picture, const ChannelSum& sum) {
@@ -125,7 +131,7 @@ SeenPoints seen_points(const Picture& picture, const Roles& roles) {
           static_cast<std::size_t>(y) * static_cast<std::size_t>(picture.width()) + static_cast<std::size_t>(x);
       if (!is_seen[i]) continue;
       const float* p = &position[3 * i];
-      points.pixel_px.emplace_back(x + 0.5, y + 0.5);
+      points.pixel_px.push_back(middle_of_pixel(i, picture.width()));
       points.position.emplace_back(p[0], p[1], p[2]);
       points.rounding.push_back(std::hypot(rounding_of(p[0], position_step), rounding_of(p[1], position_step),
                                            rounding_of(p[2], position_step)) /

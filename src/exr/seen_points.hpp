@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <string>
 #include <vector>
@@ -27,15 +28,18 @@ struct SeenPoints {
 
   std::vector<Eigen::Vector3d> position;  ///< from origin, in units
   std::vector<Eigen::Vector2d> pixel_px;
-  std::vector<double> rounding;  ///< standard deviation of a coordinate by the format of the file, in units
-  std::vector<int> patch;        ///< which part of the picture a point lies in: errors of one part depend on each other
-  std::vector<float> depth;      ///< as in the file; empty if it has none
-  double depth_rounding = 0;     ///< relative standard deviation by the format
+  std::vector<double> rounding;    ///< standard deviation of a coordinate by the format of the file, in units
+  std::vector<std::size_t> patch;  ///< which part of the picture a point lies in: errors of a part depend on each other
+  std::vector<float> depth;        ///< as in the file; empty if it has none
+  double depth_rounding = 0;       ///< relative standard deviation by the format
 
   std::size_t size() const { return position.size(); }
 };
 
-inline constexpr int patches_per_side = 8;
+inline constexpr std::size_t patches_per_side = 8;
+
+/// The middle of a pixel, which is counted row by row, in pixels from the upper left corner.
+Eigen::Vector2d middle_of_pixel(std::size_t pixel, int width);
 
 /// The points of a picture that has positions: all, or those on a grid coarse enough to be few.
 SeenPoints seen_points(const Picture& picture, const Roles& roles);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <numbers>
@@ -99,7 +100,7 @@ class CheckedLight {
     copy(std::array{cosine(outer), 1 / (cosine(inner) - cosine(outer))}, p.cone);
   }
 
-  Row row(int index) const {
+  Row row(std::ptrdiff_t index) const {
     Row result;
     std::copy_n(light_.map.view_projection.begin() + 4 * index, 4, result.begin());
     return result;

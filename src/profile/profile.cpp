@@ -251,11 +251,11 @@ Profile Profile::better_dipole(const Rgb& reduced_scattering_per_mm, const Rgb& 
 
 Profile Profile::tabulated(const std::vector<TableRow>& rows) {
   require_rows(rows);
-  std::vector<double> radii;
-  for (const TableRow& row : rows) radii.push_back(row.r_mm);
+  std::vector<double> radii(rows.size());
+  std::transform(rows.begin(), rows.end(), radii.begin(), [](const TableRow& row) { return row.r_mm; });
   return Profile(for_each_channel([&](int c) {
-    std::vector<double> values;
-    for (const TableRow& row : rows) values.push_back(row.value[c]);
+    std::vector<double> values(rows.size());
+    std::transform(rows.begin(), rows.end(), values.begin(), [&](const TableRow& row) { return row.value[c]; });
     return std::make_shared<TableCurve>(radii, values);
   }));
 }

@@ -10,11 +10,11 @@ namespace dermis {
 /// Abscissas on (-1, 1) and weights of the rule with `n` points, exact for polynomials of degree 2n - 1.
 template <int n>
 struct GaussLegendre {
-  std::array<double, n> point;
-  std::array<double, n> weight;
+  std::array<double, n> point{};
+  std::array<double, n> weight{};
 
   /// Newton's method on the Legendre polynomial, from Tricomi's guess for each root.
-  GaussLegendre() : point{}, weight{} {
+  GaussLegendre() {
     for (int i = 0; i < n; ++i) {
       double x = std::cos(std::numbers::pi * (i + 0.75) / (n + 0.5));
       double slope = 0;

@@ -1,6 +1,6 @@
 #include "profile/table_curve.hpp"
 
-#include <math.h>  // j0 of POSIX
+#include <math.h>  // NOLINT(modernize-deprecated-headers): j0 is in POSIX, not in C++
 
 #include <algorithm>
 #include <cmath>

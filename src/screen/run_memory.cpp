@@ -2,6 +2,7 @@
 
 #include <array>
 #include <numeric>
+#include <utility>
 
 namespace dermis {
 
@@ -22,7 +23,7 @@ std::size_t RunSizes::bytes(bool defers) const {
   return std::accumulate(method_bytes.begin(), method_bytes.end(), sum);
 }
 
-RunMemory::RunMemory(const cl::Context& context, const RunSizes& wanted) : sizes(wanted) {
+RunMemory::RunMemory(const cl::Context& context, RunSizes wanted) : sizes(std::move(wanted)) {
   const auto allocate = [&](std::size_t bytes) { return cl::Buffer(context, CL_MEM_READ_WRITE, bytes); };
   const auto common = common_bytes(sizes.frame);
   material_ids = allocate(common[0]);

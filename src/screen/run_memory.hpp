@@ -35,7 +35,7 @@ struct RunMemory {
   cl::Buffer curvature;            ///< 1/mm, of each pixel; null if it is not asked for
   std::vector<cl::Buffer> method;  ///< as ScatterMethod::buffer_bytes lists them
 
-  RunMemory(const cl::Context& context, const RunSizes& wanted);
+  RunMemory(const cl::Context& context, RunSizes wanted);
   void need_deferred(const cl::Context& context);
 };
 

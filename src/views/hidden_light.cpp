@@ -37,8 +37,8 @@ Images images_of(const View& view) {
 /// The rows of the matrix turn without a mirror.
 bool is_motion(const std::array<double, 12>& m) {
   double worst = 0;
-  for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) {
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) {
       const double product = m[4 * i] * m[4 * j] + m[4 * i + 1] * m[4 * j + 1] + m[4 * i + 2] * m[4 * j + 2];
       worst = std::max(worst, std::abs(product - (i == j ? 1 : 0)));
     }
@@ -151,7 +151,7 @@ HiddenLight::HiddenLight(const PlanSettings& settings) : state_(std::make_unique
   state_->weights = build_plan(weights_of(settings));
   state_->pixels = build_program(settings.device, {"views/view_pixels.cl"}, options + build_constant("V", 1));
   state_->gather = build_program(settings.device, {"views/hidden_light.cl"}, by_lanes);
-  state_->profiles = upload_profiles(cl::Context(settings.device.context(), true), settings.materials);
+  state_->profiles.upload(cl::Context(settings.device.context(), true), settings.materials);
 }
 
 HiddenLight::~HiddenLight() = default;

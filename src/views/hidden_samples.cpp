@@ -277,7 +277,7 @@ void include(const params::HiddenSample& sample, params::HiddenCell& cell) {
 /// Appends a cell, which has all its samples on each level.
 void append_cell(std::span<const std::pair<Cube, const HiddenPatch*>> patches, const params::HiddenMaterial& material,
                  HiddenSamples& to) {
-  const double reach_mm = static_cast<double>(material.reach_mm);
+  const auto reach_mm = static_cast<double>(material.reach_mm);
   const double cell_mm = cell_side * reach_mm;
   const auto& cubes = joining_of(material).cubes;
   params::HiddenCell cell{};
@@ -307,7 +307,7 @@ void append_cell(std::span<const std::pair<Cube, const HiddenPatch*>> patches, c
 
 /// Lets each level pass into the next one between half of a distance and the whole of it.
 void set_levels(params::HiddenMaterial& material) {
-  const double reach_mm = static_cast<double>(material.reach_mm);
+  const auto reach_mm = static_cast<double>(material.reach_mm);
   const auto f = [](double value) { return static_cast<float>(value); };
   for (params::HiddenLevel& level : material.levels) level = {-1, f(reach_mm * reach_mm), f(reach_mm), 0, 1, 0, 1};
   for (int level = 0; level < HIDDEN_LEVELS - 1; ++level) {
@@ -328,7 +328,7 @@ void set_levels(params::HiddenMaterial& material) {
 
 /// Appends the cells of one material.
 void append_cells(std::span<const HiddenPatch> patches, params::HiddenMaterial material, HiddenSamples& to) {
-  const double reach_mm = static_cast<double>(material.reach_mm);
+  const auto reach_mm = static_cast<double>(material.reach_mm);
   material.first_cell = static_cast<int>(to.cells.size());
   set_levels(material);
   const double cell_mm = cell_side * reach_mm;

@@ -21,7 +21,7 @@ namespace {
 
 constexpr int width = 333;
 constexpr int height = 217;
-constexpr dermis::Options small_tiles = {.taps = {.rank = 2, .count = 11}, .tile_width = 32, .tile_height = 32};
+const dermis::Options small_tiles = {.taps = {.rank = 2, .count = 11}, .tile_width = 32, .tile_height = 32};
 
 /// Two surfaces, one behind the other, under random light.
 struct Shot {

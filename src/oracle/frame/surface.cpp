@@ -92,6 +92,27 @@ void decide_wide(SurfacePixel& pixel, const Taps& taps) {
   pixel.wide_unsure = radius_px.low() < narrow && radius_px.high() >= narrow;
 }
 
+/// A pixel without its segments, for which its neighbours have to be known.
+SurfacePixel pixel_at(const FrameImages& images, const View& view, std::span<const Material> materials, int x, int y) {
+  SurfacePixel pixel;
+  pixel.material = material_at(images, view, materials, x, y);
+  if (pixel.material < 0) return pixel;
+  pixel.covered = is_there(images.matte) ? std::min(images.matte(x, y), 1.0) : 1;
+  pixel.bad = !is_finite_at(images.light, x, y) || !has_albedo(images, x, y);
+  const Material& material = materials[pixel.material];
+  const Bounded z_mm = is_there(images.depth) ? view.depth_mm(images.depth(x, y)) : exact(0);
+  pixel.position_mm = view.position(x, y, z_mm);
+  pixel.slant_mm = view.slant_mm(x, y, z_mm);
+  pixel.width_factor = width_factor(images, material, x, y);
+  const Bounded spread = widest(pixel.width_factor, material.taps);
+  for (const Axis axis : {horizontal, vertical}) {
+    pixel.px_per_mm[axis] = view.px_per_mm(axis, z_mm);
+    pixel.effective_px_per_mm[axis] = pixel.px_per_mm[axis] * spread;
+  }
+  decide_wide(pixel, material.taps);
+  return pixel;
+}
+
 }  // namespace
 
 Surface::Surface(const Frame& frame, const FrameImages& images, std::span<const Material> materials, bool sheared)
@@ -103,22 +124,7 @@ Surface::Surface(const Frame& frame, const FrameImages& images, std::span<const 
   pixels_.resize(static_cast<std::size_t>(width_) * height_);
   for (int y = 0; y < height_; ++y) {
     for (int x = 0; x < width_; ++x) {
-      SurfacePixel& pixel = pixels_[static_cast<std::size_t>(y) * width_ + x];
-      pixel.material = material_at(images, view_, materials, x, y);
-      if (pixel.material < 0) continue;
-      pixel.covered = is_there(images.matte) ? std::min(images.matte(x, y), 1.0) : 1;
-      pixel.bad = !is_finite_at(images.light, x, y) || !has_albedo(images, x, y);
-      const Material& material = materials[pixel.material];
-      const Bounded z_mm = is_there(images.depth) ? view_.depth_mm(images.depth(x, y)) : exact(0);
-      pixel.position_mm = view_.position(x, y, z_mm);
-      pixel.slant_mm = view_.slant_mm(x, y, z_mm);
-      pixel.width_factor = width_factor(images, material, x, y);
-      const Bounded spread = widest(pixel.width_factor, material.taps);
-      for (const Axis axis : {horizontal, vertical}) {
-        pixel.px_per_mm[axis] = view_.px_per_mm(axis, z_mm);
-        pixel.effective_px_per_mm[axis] = pixel.px_per_mm[axis] * spread;
-      }
-      decide_wide(pixel, material.taps);
+      pixels_[static_cast<std::size_t>(y) * width_ + x] = pixel_at(images, view_, materials, x, y);
     }
   }
   for (int y = 0; y < height_; ++y) {

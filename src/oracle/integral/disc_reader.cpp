@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "oracle/math/weighted_sum.hpp"
 
@@ -94,10 +95,11 @@ void DiscReader::read_from(int level, const SamplePlace& place, std::vector<std:
   const auto share = [&](Bounded at, double texel) {
     return clamped((at - exact(texel) - exact(0.5)) * sharpness + exact(0.5), 0, 1);
   };
+  const auto whole = [](double at) { return static_cast<int>(std::floor(at)); };
   bool may_fail = false;
-  for (double column = std::floor(u.low()); column <= std::floor(u.high()); ++column) {
-    for (double row = std::floor(v.low()); row <= std::floor(v.high()); ++row) {
-      const Square square{level, static_cast<int>(column), static_cast<int>(row), share(u, column), share(v, row)};
+  for (int column = whole(u.low()); column <= whole(u.high()); ++column) {
+    for (int row = whole(v.low()); row <= whole(v.high()); ++row) {
+      const Square square{level, column, row, share(u, column), share(v, row)};
       const Attempt attempt = read_square(square, place);
       if (attempt.may_succeed) outcomes.push_back(attempt.reading);
       may_fail = may_fail || attempt.may_fail;
@@ -109,30 +111,30 @@ void DiscReader::read_from(int level, const SamplePlace& place, std::vector<std:
 DiscReader::Attempt DiscReader::read_square(const Square& square, const SamplePlace& place) const {
   const auto& [level, column, row, right, below] = square;
   Attempt attempt;
-  std::vector<Bounded> shares, areas, rises;
+  std::vector<Bounded> shares;
+  std::vector<Bounded> areas;
+  std::vector<Bounded> rises;
   std::array<std::vector<Bounded>, 3> lights;
-  for (int j = 0; j < 2; ++j) {
-    for (int i = 0; i < 2; ++i) {
-      const Bounded share = (i == 0 ? exact(1) - right : right) * (j == 0 ? exact(1) - below : below);
-      if (is_exactly(share, 0)) continue;
-      const int along_x = column + i;
-      const int along_y = row + j;
-      const Texel* texel = texels_.at(level, (x_ >> level) + along_x, (y_ >> level) + along_y);
-      const bool holds_pixel = along_x == 0 && along_y == 0;
-      const bool counts = texel != nullptr && !holds_pixel && texel->material == pixel_.material;
-      if (level > 0 && (!counts || texel->material_unsure)) {
-        attempt.may_fail = true;
-        if (!counts && share.low() > 0) attempt.may_succeed = false;
-      }
-      if (!counts) continue;
-      shares.push_back(share);
-      areas.push_back(share * texel->area_mm2);
-      const Bounded from_middle_x = place.dx - exact(middle_of_texel(x_, level, along_x));
-      const Bounded from_middle_y = place.dy - exact(middle_of_texel(y_, level, along_y));
-      rises.push_back((texel->z_mm - pixel_.position_mm[2]) + from_middle_x * texel->slope[horizontal] +
-                      from_middle_y * texel->slope[vertical]);
-      for (int c = 0; c < 3; ++c) lights[c].push_back(texel->light[c]);
+  for (const auto& [i, j] : {std::pair(0, 0), std::pair(1, 0), std::pair(0, 1), std::pair(1, 1)}) {
+    const Bounded share = (i == 0 ? exact(1) - right : right) * (j == 0 ? exact(1) - below : below);
+    if (is_exactly(share, 0)) continue;
+    const int along_x = column + i;
+    const int along_y = row + j;
+    const Texel* texel = texels_.at(level, (x_ >> level) + along_x, (y_ >> level) + along_y);
+    const bool holds_pixel = along_x == 0 && along_y == 0;
+    const bool counts = texel != nullptr && !holds_pixel && texel->material == pixel_.material;
+    if (level > 0 && (!counts || texel->material_unsure)) {
+      attempt.may_fail = true;
+      if (!counts && share.low() > 0) attempt.may_succeed = false;
     }
+    if (!counts) continue;
+    shares.push_back(share);
+    areas.push_back(share * texel->area_mm2);
+    const Bounded from_middle_x = place.dx - exact(middle_of_texel(x_, level, along_x));
+    const Bounded from_middle_y = place.dy - exact(middle_of_texel(y_, level, along_y));
+    rises.push_back((texel->z_mm - pixel_.position_mm[2]) + from_middle_x * texel->slope[horizontal] +
+                    from_middle_y * texel->slope[vertical]);
+    for (int c = 0; c < 3; ++c) lights[c].push_back(texel->light[c]);
   }
   if (shares.empty()) return attempt;
   Reading reading;

@@ -54,7 +54,7 @@ LitPoint LightSource::reach(const Vec3& point) const {
 }
 
 Bounded LightSource::row_times(int row, const Vec3& point) const {
-  const double* m = &light_.map.view_projection[static_cast<std::size_t>(4 * row)];
+  const double* m = &light_.map.view_projection[4 * static_cast<std::size_t>(row)];
   const double value = m[0] * point[0] + m[1] * point[1] + m[2] * point[2] + m[3];
   const double magnitude =
       std::abs(m[0] * point[0]) + std::abs(m[1] * point[1]) + std::abs(m[2] * point[2]) + std::abs(m[3]);

@@ -24,6 +24,13 @@ bool is_finite(const Picture& picture, int x, int y) {
   return true;
 }
 
+bool has_light(const Picture& light, const Picture& albedo, const Picture& mask, int x, int y) {
+  return is_finite(light, x, y) && (!is_there(albedo) || is_finite(albedo, x, y)) &&
+         (!is_there(mask) || mask(x, y) > 0);
+}
+
+bool is_stretch(double mm) { return mm >= static_cast<double>(1e-9F) && mm <= static_cast<double>(1e9F); }
+
 }  // namespace
 
 TextureLight::TextureLight(const TextureFrame& frame, double albedo_mix)
@@ -41,12 +48,10 @@ TextureLight::TextureLight(const TextureFrame& frame, double albedo_mix)
   for (int y = 0; y < frame.height; ++y) {
     for (int x = 0; x < frame.width; ++x) {
       double& is_object = object(x, y);
-      if (!is_finite(given, x, y)) is_object = 0;
-      if (is_there(albedo) && !is_finite(albedo, x, y)) is_object = 0;
-      if (is_there(mask) && !(mask(x, y) > 0)) is_object = 0;
+      if (!has_light(given, albedo, mask, x, y)) is_object = 0;
       for (int axis = 0; differs && axis < 2; ++axis) {
-        const double mm = stretch(x, y, axis) = stretches[axis](x, y);
-        if (!(mm >= static_cast<double>(1e-9F) && mm <= static_cast<double>(1e9F))) is_object = 0;
+        stretch(x, y, axis) = stretches[axis](x, y);
+        if (!is_stretch(stretch(x, y, axis))) is_object = 0;
       }
       for (int c = 0; c < 3; ++c) {
         Bounded value = exact(given(x, y, c));

@@ -144,6 +144,21 @@ double projected(const Target& target, const Sample& sample, const Vec3& way) {
   return std::sqrt(r2) * sum / weights;
 }
 
+double area_of(const std::vector<Sample>& samples) {
+  double area_mm2 = 0;
+  for (const Sample& sample : samples) area_mm2 += sample.area_mm2;
+  return area_mm2;
+}
+
+/// How light crosses each material, if its profile is that of random walks.
+std::vector<std::optional<WalkCrossing>> walks_of(std::span<const Material> materials) {
+  std::vector<std::optional<WalkCrossing>> walks(materials.size());
+  for (std::size_t m = 0; m < materials.size(); ++m) {
+    if (materials[m].walk) walks[m].emplace(materials[m], reach_of(materials[m]));
+  }
+  return walks;
+}
+
 }  // namespace
 
 HiddenLight hidden_light(const Frame& frame, std::span<const Material> materials, const Options& options) {
@@ -152,16 +167,8 @@ HiddenLight hidden_light(const Frame& frame, std::span<const Material> materials
   const std::vector<std::vector<Sample>> samples = hidden_samples(frame, surface, materials, options);
   const Picture none(frame.width, frame.height, 3);
   HiddenLight hidden{none, none, none, {}};
-  std::vector<std::optional<WalkCrossing>> walks;
-  for (const Material& material : materials) {
-    walks.emplace_back();
-    if (material.walk) walks.back().emplace(material, reach_of(material));
-  }
-  for (const std::vector<Sample>& its : samples) {
-    double area_mm2 = 0;
-    for (const Sample& sample : its) area_mm2 += sample.area_mm2;
-    hidden.area_mm2.push_back(area_mm2);
-  }
+  for (const std::vector<Sample>& its : samples) hidden.area_mm2.push_back(area_of(its));
+  const std::vector<std::optional<WalkCrossing>> walks = walks_of(materials);
   for (int y = 0; y < frame.height; ++y) {
     for (int x = 0; x < frame.width; ++x) {
       const SurfacePixel& pixel = surface.at(x, y);

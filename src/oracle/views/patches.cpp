@@ -113,6 +113,7 @@ double shorter_way(const ViewPatch& patch) { return std::min(length(patch.way[0]
 
 void shorten_ways(std::vector<ViewPatch>& patches) {
   std::vector<double> ways;
+  ways.reserve(patches.size());
   for (const ViewPatch& patch : patches) ways.push_back(shorter_way(patch));
   std::sort(ways.begin(), ways.end());
   for (ViewPatch& patch : patches) {

@@ -67,8 +67,8 @@ WalkCrossing::WalkCrossing(const Material& material, double reach_mm) : step_mm_
     const double mfp = material.walk->mfp_mm[c];
     mfp_mm_[c] = mfp;
     bend_mm_[c] = bend_per_mfp * mfp / bent_share(material, c, mfp, reach_mm);
-    std::vector<double> thicknesses;
-    for (int i = 0; i < slabs; ++i) thicknesses.push_back(std::max(i * step_mm_ / mfp, thinnest_mfp));
+    std::vector<double> thicknesses(slabs);
+    for (int i = 0; i < slabs; ++i) thicknesses[i] = std::max(i * step_mm_ / mfp, thinnest_mfp);
     const WalkLight light = walk(thicknesses, material.walk->scattering_albedo[c]);
     for (int i = 0; i < slabs; ++i) {
       const double of_profile = std::max(1 - material.cdf(c, thicknesses[i] * mfp), 1e-5);

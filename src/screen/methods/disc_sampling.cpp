@@ -39,12 +39,12 @@ class DiscSampling final : public ScatterMethod {
   int vector_width() const override { return 1; }
 
   void upload(const cl::Context& context, const MaterialTables& tables) override {
-    profiles_ = upload_profiles(context, settings_.materials);
+    profiles_.upload(context, settings_.materials);
     std::vector<params::DiscParams> discs;
     std::vector<params::SampleParams> samples;
     for (std::size_t i = 0; i < settings_.materials.size(); ++i) {
       const auto& widths = tables.materials[i].relative_width;
-      const auto widest = std::max_element(std::begin(widths), std::end(widths));
+      const auto* const widest = std::max_element(std::begin(widths), std::end(widths));
       append_disc(settings_.materials[i].profile, static_cast<int>(widest - std::begin(widths)), settings_.options.disc,
                   discs, samples);
     }

@@ -21,16 +21,16 @@ constexpr double share_within_reach = 1 - 1e-6;
 
 }  // namespace
 
-ProfileTables upload_profiles(const cl::Context& context, const std::vector<Material>& materials) {
+void ProfileTables::upload(const cl::Context& context, const std::vector<Material>& materials) {
   std::vector<params::ProfileParams> rows;
-  std::vector<std::array<float, 4>> nodes;
+  std::vector<std::array<float, 4>> values;
   for (const Material& material : materials) {
     const Profile& profile = material.profile;
     double reach_mm = 0;
     for (int c = 0; c < 3; ++c) reach_mm = std::max(reach_mm, profile.radius(c, share_within_reach));
     const double finest_mm = std::ldexp(reach_mm, -18);
     const auto append = [&](const std::function<double(int, double)>& f) {
-      return append_table(tabulate_linear(f, finest_mm, reach_mm, log2_nodes_per_octave), nodes);
+      return append_table(tabulate_linear(f, finest_mm, reach_mm, log2_nodes_per_octave), values);
     };
     params::ProfileParams row{};
     row.reach_mm = static_cast<float>(reach_mm);
@@ -38,7 +38,8 @@ ProfileTables upload_profiles(const cl::Context& context, const std::vector<Mate
     row.cumulated = append([&](int c, double r) { return profile.cdf(c, r); });
     rows.push_back(row);
   }
-  return {upload(context, rows), upload(context, nodes)};
+  profiles = dermis::upload(context, rows);
+  nodes = dermis::upload(context, values);
 }
 
 std::string profile_table_constant() { return build_constant("TABLE_SHIFT", 23 - log2_nodes_per_octave); }

@@ -12,9 +12,9 @@ namespace dermis {
 struct ProfileTables {
   cl::Buffer profiles;  ///< ProfileParams of each material
   cl::Buffer nodes;     ///< of all tables: R(r), and the light within the disc of radius r
-};
 
-ProfileTables upload_profiles(const cl::Context& context, const std::vector<Material>& materials);
+  void upload(const cl::Context& context, const std::vector<Material>& materials);
+};
 
 /// The build constant that kernels read the tables with.
 std::string profile_table_constant();

@@ -22,7 +22,7 @@ class SeparablePixels final : public SeparableMethod {
 
   std::vector<std::size_t> buffer_bytes(const FrameSize& frame) const override {
     const std::size_t plane_bytes = frame.plane() * sizeof(float);
-    return {window_bytes(frame_window(frame, settings_.has_pixel_width()).planes), 3 * terms_ * plane_bytes,
+    return {window_bytes(frame_window(frame, settings_.has_pixel_width()).planes), 3 * plane_bytes * terms_,
             plane_bytes};
   }
 

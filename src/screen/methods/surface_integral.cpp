@@ -23,7 +23,7 @@ class SurfaceIntegral final : public ScatterMethod {
   int rows_per_step(int) const override { return 16; }
 
   void upload(const cl::Context& context, const MaterialTables&) override {
-    profiles_ = upload_profiles(context, settings_.materials);
+    profiles_.upload(context, settings_.materials);
   }
 
   std::vector<std::size_t> buffer_bytes(const FrameSize& frame) const override {

@@ -6,10 +6,10 @@ namespace dermis {
 
 params::WindowLayout window_layout(std::size_t plane, int terms, bool has_pixel_width) {
   const auto elements = static_cast<params::Bytes>(plane);
-  const auto bytes = static_cast<params::Bytes>(plane * sizeof(float));
+  const auto bytes = elements * static_cast<params::Bytes>(sizeof(float));
   params::WindowLayout layout{};
   layout.plane = elements;
-  layout.segment = 3 * terms * bytes;
+  layout.segment = 3 * bytes * terms;
   layout.depth = layout.segment + bytes;
   layout.ray_depth = layout.depth + bytes;
   layout.width = layout.ray_depth + bytes;
