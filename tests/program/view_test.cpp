@@ -239,12 +239,12 @@ TEST_CASE("a random walk gains by the curvature that normals tell, and the progr
   const std::string walk = "walk:9/6/4,albedo=0.8/0.6/0.4";
   const Outcome with = filter("with.exr", walk, {});
   CHECK(with.exit_code == 0);
-  CHECK(has(with.err, "curvature: by the normals"));
+  CHECK(has(with.input, "curvature: by the normals"));
   const Outcome off = filter("off.exr", walk, {"--curvature", "off"});
-  CHECK_FALSE(has(off.err, "curvature"));
+  CHECK_FALSE(has(off.input, "curvature"));
   CHECK(ball.off("with.exr", "off.exr") > 0.01);
   const Outcome without = filter("without.exr", walk, {"--role", "normal="});
-  CHECK(has(without.err, "curvature: none, as there are no normals"));
+  CHECK(has(without.input, "curvature: none, as there are no normals"));
   CHECK(ball.off("without.exr", "off.exr") == 0);
-  CHECK_FALSE(has(filter("burley.exr", "burley:9/6/4,cycles", {}).err, "curvature"));
+  CHECK_FALSE(has(filter("burley.exr", "burley:9/6/4,cycles", {}).input, "curvature"));
 }
