@@ -233,7 +233,7 @@ TEST_CASE("each picture of a sequence has its own view, and warm knows them") {
 TEST_CASE("a random walk gains by the curvature that normals tell, and the program says so") {
   const Ball ball;
   const auto filter = [&](const std::string& output, const std::string& profile, Words more) {
-    more.insert(more.begin(), {"--material", "1=" + profile, "--quality", "draft"});
+    more.insert(more.begin(), {"--material", "1=" + profile, "--quality", "draft", "--view-factor", "none"});
     return run_program(filter_arguments({ball.scene.path, ball.scene.camera}, ball.folder / output, more));
   };
   const std::string walk = "walk:9/6/4,albedo=0.8/0.6/0.4";

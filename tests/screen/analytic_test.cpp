@@ -69,6 +69,7 @@ TEST_CASE("constant light stays constant on any geometry", "[analytic]") {
     RandomFrame random_frame(random, {.width = 257, .height = 89, .float_only = true});
     random_frame.options.lighting = dermis::Lighting::raw;
     random_frame.options.albedo_mix = 0;
+    random_frame.options.curvature = false;  // which gives and takes light
     const float level[3] = {static_cast<float>(random.uniform(0.1, 9)), 1.0F / 3, 1e-4F};
     for (int y = 0; y < 89; ++y) {
       for (int x = 0; x < 257; ++x) {
