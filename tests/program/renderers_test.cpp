@@ -235,6 +235,15 @@ TEST_CASE("passes of another frame are warned of") {
   CHECK(has(shot.filter("frame.exr", "out.exr", words).errors, said));
   const Outcome info = run_program({"info", shot.folder / "frame.exr", "--role", words.back(), "--focal-px", "99"});
   CHECK(has(info.errors, "dermis: warning: " + (shot.folder / "frame.exr") + ": " + said));
+  const Outcome texture = run_program({"texture", shot.folder / "frame.exr", "--role", words.back(), "-o",
+                                       shot.folder / "texture.exr", "--profile", "skin", "--mm-per-texel", "0.5"});
+  CHECK(has(texture.errors, said));
+  write_text(shot.folder / "lights.json",
+             R"({"lights": [{"kind": "point", "position": [0, 0, -99], "colour": [1, 1, 1]}]})");
+  const Outcome light =
+      run_program({"light", shot.folder / "frame.exr", "--role", words.back(), "-o", shot.folder / "lit.exr",
+                   "--lights", shot.folder / "lights.json", "--eye", "0,0,0"});
+  CHECK(has(light.errors, said));
   CHECK_FALSE(has(shot.filter("in.exr", "out.exr", both_materials).errors, "frame"));
 
   // Where something stands in the ids and nothing in the depth, beyond the width of an edge.

@@ -17,6 +17,7 @@
 #include "arguments/picture_arguments.hpp"
 #include "arguments/word_argument.hpp"
 #include "commands/commands.hpp"
+#include "commands/input_report.hpp"
 #include "dermis/error.hpp"
 #include "dermis/exr.hpp"
 #include "dermis/shading.hpp"
@@ -46,11 +47,17 @@ struct LightArguments {
   double softness_texels = ShadingOptions{}.softness_texels;
 };
 
+/// Warns of what contradicts roles and camera.
 Viewer viewer_of(const LightArguments& arguments, const exr::Picture& picture, const exr::Roles& roles) {
-  if (!arguments.eye.empty())
+  Messages messages({});
+  messages.begin(arguments.path);
+  if (!arguments.eye.empty()) {
+    warn_of_input(roles, {}, messages);
     return {Camera::Projection::perspective, {arguments.eye[0], arguments.eye[1], arguments.eye[2]}};
+  }
   try {
     const exr::FoundCamera found = exr::find_camera(picture, roles);
+    warn_of_input(roles, found, messages);
     if (!found.eye)
       throw Error(ErrorCode::role_missing, "camera", found.source + ", which does not tell where it stands", "");
     return {found.camera.projection, *found.eye};

@@ -17,6 +17,7 @@
 #include "arguments/profile_argument.hpp"
 #include "arguments/word_argument.hpp"
 #include "commands/commands.hpp"
+#include "commands/input_report.hpp"
 #include "commands/result_channels.hpp"
 #include "dermis/error.hpp"
 #include "dermis/exr.hpp"
@@ -144,6 +145,7 @@ void filter_texture(const TextureArguments& arguments, const PictureFiles& files
   check_compression(arguments.output.compression, picture, roles, {});
   Messages messages({});
   messages.begin(files.input);
+  warn_of_input(roles, {}, messages);
   const std::vector<std::string> scattered = scattered_channels(picture, roles, messages);
   const std::vector<std::string> result = channels_of_pass(roles, "sss_albedo");
   picture.add_channels(scattered, Format::f32);

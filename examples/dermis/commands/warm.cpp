@@ -11,6 +11,7 @@
 #include "commands/commands.hpp"
 #include "commands/filter_job.hpp"
 #include "commands/filter_session.hpp"
+#include "commands/input_report.hpp"
 #include "commands/surface_input.hpp"
 #include "dermis/error.hpp"
 #include "files/picture_roles.hpp"
@@ -52,6 +53,7 @@ void warm_for(const std::string& path, const FilterJob& job, FilterSession& sess
   messages.begin(path);
   exr::Picture picture = read_picture(path);
   SurfaceInput input = load_surface(picture, path, views_of(picture, job.surface.picture).front(), job.surface, false);
+  warn_of_input(input.roles, input.camera, messages);
   Frame frame = input.frame(job.surface.mm_per_unit);
   const ChosenTaps taps = taps_of(job, count_pixels(input, job.surface, messages), input.lighting);
   transmit_light(session.device(), job.surface, frame, input);
