@@ -1,8 +1,11 @@
 #include "paper/svd.hpp"
 
-#include <Eigen/SVD>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
+#include <vector>
 
 namespace dermis::bench {
 
@@ -30,14 +33,17 @@ Svd svd_of(const Sample& sample) {
     fold[0] = 1;
     const Eigen::MatrixXd folded =
         fold.asDiagonal() * sample.exact[c].topLeftCorner(half_px, half_px) * fold.asDiagonal();
-    const Eigen::BDCSVD<Eigen::MatrixXd> svd(folded, Eigen::ComputeThinU | Eigen::ComputeThinV);
-    result.values[c] = svd.singularValues();
+    // The matrix is symmetric: its singular values are the absolute eigenvalues.
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(folded);
+    std::vector<Eigen::Index> order(half_px);
+    std::iota(order.begin(), order.end(), Eigen::Index{0});
+    std::sort(order.begin(), order.end(), [&](Eigen::Index a, Eigen::Index b) {
+      return std::abs(eigen.eigenvalues()[a]) > std::abs(eigen.eigenvalues()[b]);
+    });
+    result.values[c] = eigen.eigenvalues()(order).cwiseAbs();
     for (int t = 0; t < most_terms; ++t) {
-      // The matrix is symmetric: left and right vectors are the same but for the sign of the eigenvalue.
-      const Eigen::VectorXd v = svd.matrixV().col(t);
-      const double sign = svd.matrixU().col(t).dot(v) < 0 ? -1 : 1;
-      Product product{sign * svd.singularValues()[t], Eigen::VectorXd::Zero(half_px + 1)};
-      product.f.head(half_px) = v.cwiseQuotient(fold);
+      Product product{eigen.eigenvalues()[order[t]], Eigen::VectorXd::Zero(half_px + 1)};
+      product.f.head(half_px) = eigen.eigenvectors().col(order[t]).cwiseQuotient(fold);
       result.products[c].push_back(product);
     }
   }
