@@ -24,7 +24,9 @@ constexpr std::size_t batch_bytes = std::size_t{64} << 20;  // read at once
 // The rows of one block of PIZ, and of DWAB.
 constexpr int smallest_batch_rows = 32;
 constexpr int largest_batch_rows = 256;
-constexpr std::int64_t most_around = 16;  // times the pixels of the largest part
+// Of what surrounds the parts: times the pixels of the largest one, and pixels that take little memory anyhow.
+constexpr std::int64_t most_around = 16;
+constexpr std::int64_t little_around_px = 1 << 16;
 
 int rows_at_once(int tile_height, std::size_t packed_row_bytes) {
   if (tile_height > 0) return tile_height;
@@ -69,7 +71,8 @@ std::string text_of(const Window& window) {
 void check_parts(const std::vector<PartDescription>& parts, const Window& whole) {
   std::int64_t largest = 0;
   for (const PartDescription& part : parts) largest = std::max(largest, pixels_of(part.data));
-  if (std::max(whole.width, whole.height) > max_side_px || pixels_of(whole) > most_around * largest)
+  if (std::max(whole.width, whole.height) > max_side_px ||
+      pixels_of(whole) > std::max(most_around * largest, little_around_px))
     throw std::runtime_error("parts far from each other, all within " + text_of(whole));
 }
 
