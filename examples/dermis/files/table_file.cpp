@@ -14,8 +14,8 @@
 namespace dermis::program {
 namespace {
 
-constexpr std::size_t columns = 4;
-constexpr std::array<const char*, columns> column_names = {"r_mm", "R", "G", "B"};
+constexpr std::size_t values_per_row = 4;
+constexpr std::array<const char*, values_per_row> column_names = {"r_mm", "R", "G", "B"};
 
 std::string_view trimmed(std::string_view text) {
   constexpr std::string_view blanks = " \t\r";
@@ -65,7 +65,7 @@ class Reader {
   }
 
   TableRow read_row(const std::vector<std::string_view>& blocks, double last_mm) const {
-    if (blocks.size() != columns)
+    if (blocks.size() != values_per_row)
       fail(fmt::format("{} column{}", blocks.size(), blocks.size() == 1 ? "" : "s"), "four: r_mm,R,G,B");
     TableRow row{read_number(blocks, 0), {}};
     if (row.r_mm != 0 && (row.r_mm < 1e-9 || row.r_mm > 1e9))

@@ -11,7 +11,7 @@
 namespace dermis::program {
 namespace {
 
-constexpr int columns = 3;
+constexpr int profile_columns = 3;
 constexpr int points = 200;
 
 /// The points of one channel, as inline data. Narrow channels fall to nothing on the way.
@@ -38,10 +38,10 @@ std::string panel(const Preset& preset) {
 }  // namespace
 
 void plot_profiles(std::string_view argument, const std::filesystem::path& path, std::span<const Preset> presets) {
-  const int rows = (static_cast<int>(presets.size()) + columns - 1) / columns;
-  std::string script = fmt::format("set multiplot layout {},{}\n", rows, columns);
+  const int rows = (static_cast<int>(presets.size()) + profile_columns - 1) / profile_columns;
+  std::string script = fmt::format("set multiplot layout {},{}\n", rows, profile_columns);
   for (const Preset& preset : presets) script += panel(preset);
-  draw_figure(argument, path, {360 * columns, 260 * rows}, script + "unset multiplot\n");
+  draw_figure(argument, path, {360 * profile_columns, 260 * rows}, script + "unset multiplot\n");
 }
 
 }  // namespace dermis::program
