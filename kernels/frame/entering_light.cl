@@ -13,7 +13,7 @@
 typedef struct {
   vint material;  // 1 + index, or 0 where there is none or no normal
   vfloat depth;   // mm
-  Tangent normal;
+  Vectors normal;
 } Facets;
 
 // The images that curvature is measured in.
@@ -34,7 +34,7 @@ static inline Facets facets_at(const SurfaceImages* images, int x, int y) {
   const vfloat largest = higher(higher(fabs(n.r), fabs(n.g)), fabs(n.b));
   const vint good = AS_MASK(there != 0) & is_finite(n) & AS_MASK(largest > 0.0f);
   const vfloat safe = select((vfloat)(1.0f), largest, good);
-  const Tangent direction = {select_or_zero(good, n.r / safe), select_or_zero(good, n.g / safe),
+  const Vectors direction = {select_or_zero(good, n.r / safe), select_or_zero(good, n.g / safe),
                              select_or_zero(good, n.b / safe)};
   const vfloat length = sqrt(select((vfloat)(1.0f), squared_length(direction), good));
   const vfloat depth = read_values(row_of(images->depth, &images->layouts->depth, f->width, row, 0), x);
@@ -46,21 +46,21 @@ static inline Facets facets_at(const SurfaceImages* images, int x, int y) {
 
 // How points and normals change with one pixel along an axis.
 typedef struct {
-  Tangent point;  // pixels
-  Tangent normal;
+  Vectors point;  // pixels
+  Vectors normal;
 } Change;
 
-static inline Tangent scaled_tangent(vfloat factor, Tangent t) {
-  const Tangent result = {factor * t.x, factor * t.y, factor * t.z};
+static inline Vectors scaled_tangent(vfloat factor, Vectors t) {
+  const Vectors result = {factor * t.x, factor * t.y, factor * t.z};
   return result;
 }
 
-static inline Tangent sum_of_tangents(Tangent a, Tangent b) {
-  const Tangent result = {a.x + b.x, a.y + b.y, a.z + b.z};
+static inline Vectors sum_of_tangents(Vectors a, Vectors b) {
+  const Vectors result = {a.x + b.x, a.y + b.y, a.z + b.z};
   return result;
 }
 
-static inline vfloat dot_of_tangents(Tangent a, Tangent b) { return fma(a.x, b.x, fma(a.y, b.y, a.z * b.z)); }
+static inline vfloat dot_of_tangents(Vectors a, Vectors b) { return fma(a.x, b.x, fma(a.y, b.y, a.z * b.z)); }
 
 // From a pixel to the next one at (dx, dy), and back if `sign` is -1.
 static inline Change change_to(const struct FrameParams* f, const Points* p, vfloat per_px, const Facets* own,

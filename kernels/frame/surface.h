@@ -17,10 +17,17 @@ FORCED_INLINE Points points_at(const struct FrameParams* f, vfloat depth, int x,
   return p;
 }
 
-// Squared true distance to the points at depth z that lie (dx, dy) pixels away.
-FORCED_INLINE vfloat squared_distance(const struct FrameParams* f, const Points* p, vfloat z, vfloat dx, vfloat dy) {
+// V vectors, mm, or of unit length.
+typedef struct {
+  vfloat x, y, z;
+} Vectors;
+
+// The ways to the points at depth z that lie (dx, dy) pixels away.
+FORCED_INLINE Vectors way_to(const struct FrameParams* f, const Points* p, vfloat z, vfloat dx, vfloat dy) {
   const vfloat delta_z = z - p->z;
-  const vfloat delta_x = fma(p->x_per_z, delta_z, dx * fma(z, (vfloat)(f->slope_x), (vfloat)(f->mm_per_px_x)));
-  const vfloat delta_y = fma(p->y_per_z, delta_z, dy * fma(z, (vfloat)(f->slope_y), (vfloat)(f->mm_per_px_y)));
-  return fma(delta_x, delta_x, fma(delta_y, delta_y, delta_z * delta_z));
+  const Vectors way = {fma(p->x_per_z, delta_z, dx * fma(z, (vfloat)(f->slope_x), (vfloat)(f->mm_per_px_x))),
+                       fma(p->y_per_z, delta_z, dy * fma(z, (vfloat)(f->slope_y), (vfloat)(f->mm_per_px_y))), delta_z};
+  return way;
 }
+
+FORCED_INLINE vfloat squared_length(Vectors a) { return fma(a.x, a.x, fma(a.y, a.y, a.z * a.z)); }

@@ -34,26 +34,20 @@ FORCED_INLINE vfloat depth_slope(const struct FrameParams* f, const Window* w, i
 }
 
 // Change of position with one pixel along x or y, mm.
-typedef struct {
-  vfloat x, y, z;
-} Tangent;
-
-static inline Tangent tangent_x(const struct FrameParams* f, const Points* p, vfloat slope) {
+static inline Vectors tangent_x(const struct FrameParams* f, const Points* p, vfloat slope) {
   const vfloat size = fma(p->z, (vfloat)(f->slope_x), (vfloat)(f->mm_per_px_x));
-  const Tangent t = {fma(p->x_per_z, slope, size), p->y_per_z * slope, slope};
+  const Vectors t = {fma(p->x_per_z, slope, size), p->y_per_z * slope, slope};
   return t;
 }
 
-static inline Tangent tangent_y(const struct FrameParams* f, const Points* p, vfloat slope) {
+static inline Vectors tangent_y(const struct FrameParams* f, const Points* p, vfloat slope) {
   const vfloat size = fma(p->z, (vfloat)(f->slope_y), (vfloat)(f->mm_per_px_y));
-  const Tangent t = {p->x_per_z * slope, fma(p->y_per_z, slope, size), slope};
+  const Vectors t = {p->x_per_z * slope, fma(p->y_per_z, slope, size), slope};
   return t;
 }
-
-static inline vfloat squared_length(Tangent t) { return fma(t.x, t.x, fma(t.y, t.y, t.z * t.z)); }
 
 // The area of the patch of a pixel, mm^2: the tangents are its sides.
-static inline vfloat patch_area(Tangent x, Tangent y) {
-  const Tangent normal = {x.y * y.z - x.z * y.y, x.z * y.x - x.x * y.z, x.x * y.y - x.y * y.x};
+static inline vfloat patch_area(Vectors x, Vectors y) {
+  const Vectors normal = {x.y * y.z - x.z * y.y, x.z * y.x - x.x * y.z, x.x * y.y - x.y * y.x};
   return sqrt(squared_length(normal));
 }

@@ -30,7 +30,7 @@ typedef struct {
 } Disc;
 
 // The disc in the plane in which a pixel spans x and y (Gram and Schmidt).
-static inline Disc disc_of(Tangent x, Tangent y) {
+static inline Disc disc_of(Vectors x, Vectors y) {
   const float length_x = sqrt(squared_length(x));
   const float along = fma(x.x, y.x, fma(x.y, y.y, x.z * y.z)) / length_x;
   const float area = patch_area(x, y);
@@ -228,8 +228,8 @@ static inline Disc disc_at(const struct FrameParams* f, const Points* p, float s
   const float limit = STEEPEST / fmax(along, STEEPEST * forward);
   return disc_of(tangent_x(f, p, limit * change_x * size_x), tangent_y(f, p, limit * change_y * size_y));
 #else
-  const Tangent across = {size_x, 0.0f, 0.0f};
-  const Tangent down = {0.0f, size_y, 0.0f};
+  const Vectors across = {size_x, 0.0f, 0.0f};
+  const Vectors down = {0.0f, size_y, 0.0f};
   return disc_of(across, down);
 #endif
 }

@@ -2,6 +2,7 @@
 //     M(p) = sum R(|P_p - P_q|) E(q) A(q) / sum R(|P_p - P_q|) A(q).
 #pragma OPENCL FP_CONTRACT OFF
 #include "integral/own_share.h"
+#include "integral/projection.h"
 
 // Gauss-Legendre points and weights on [-1/2, 1/2].
 constant float points_2[2] = {-0.288675135f, 0.288675135f};
@@ -39,21 +40,73 @@ typedef struct {
   vrgb weight;
 } Sum;
 
-// R averaged over the patch of the pixels (dx, dy) away, by n x n quadrature points.
-static inline vrgb patch_average(const struct FrameParams* f, const Points* p, const Profile* profile, int dx, int dy,
-                                 vfloat z, vfloat slope_x, vfloat slope_y, int n) {
-  if (n == 1) {
-    return radial_at(profile, squared_distance(f, p, z, (vfloat)((float)dx), (vfloat)((float)dy)));
+// The frame that is integrated over.
+typedef struct {
+  const struct FrameParams* f;
+  const Window* window;
+  global const float* geometry;
+} Surface;
+
+// The patch of V pixels.
+typedef struct {
+  vfloat z, slope_x, slope_y;
+  vfloat area_mm2;
+#if PROJECTED
+  Vectors normal;
+#endif
+} Patches;
+
+// The patches of the pixels from (x, y) on.
+static inline Patches patches_at(const Surface* surface, int x, int y) {
+  const Window* w = surface->window;
+  const size_t at = pixel_at(w, x, y);
+  Patches patches = {load_floats(w->depth + at), load_floats(surface->geometry + at),
+                     load_floats(surface->geometry + w->plane + at),
+                     load_floats(surface->geometry + 2 * w->plane + at)};
+#if PROJECTED
+  const Points points = points_at(surface->f, patches.z, x, y);
+  const Vectors a = tangent_x(surface->f, &points, patches.slope_x);
+  const Vectors b = tangent_y(surface->f, &points, patches.slope_y);
+  patches.normal = unit_vectors(cross_product(&b, &a));
+#endif
+  return patches;
+}
+
+// The pixels that gather.
+typedef struct {
+  Points points;
+  Profile profile;
+#if PROJECTED
+  int is_projected;
+  Axes axes;
+#endif
+} Target;
+
+// R at a point of patches, of which it stands for a share.
+static inline vrgb radial_from(const struct FrameParams* f, const Target* target, const Patches* patches, vfloat z,
+                               float dx, float dy, float share) {
+  const Vectors way = way_to(f, &target->points, z, (vfloat)(dx), (vfloat)(dy));
+  const vrgb radial = radial_at(&target->profile, squared_length(way));
+#if PROJECTED
+  if (target->is_projected) {
+    return times(radial, projection_factor(&target->axes, patches->normal, way, share * patches->area_mm2));
   }
+#endif
+  return radial;
+}
+
+// R averaged over the patches of the pixels (dx, dy) away, by n x n quadrature points.
+static inline vrgb patch_average(const struct FrameParams* f, const Target* target, const Patches* patches, int dx,
+                                 int dy, int n) {
+  if (n == 1) return radial_from(f, target, patches, patches->z, (float)dx, (float)dy, 1.0f);
   vrgb sum = {(vfloat)(0.0f), (vfloat)(0.0f), (vfloat)(0.0f)};
   for (int j = 0; j < n; ++j) {
     for (int i = 0; i < n; ++i) {
       const float u = n == 2 ? points_2[i] : points_4[i];
       const float v = n == 2 ? points_2[j] : points_4[j];
       const float weight = n == 2 ? 0.25f : weights_4[i] * weights_4[j];
-      const vfloat r_squared =
-          squared_distance(f, p, z + u * slope_x + v * slope_y, (vfloat)((float)dx + u), (vfloat)((float)dy + v));
-      add(&sum, times(radial_at(profile, r_squared), weight));
+      const vfloat z = patches->z + u * patches->slope_x + v * patches->slope_y;
+      add(&sum, times(radial_from(f, target, patches, z, (float)dx + u, (float)dy + v, weight), weight));
     }
   }
   return sum;
@@ -78,27 +131,18 @@ static inline int2 reach(const struct FrameParams* f, const Points* p, vint mask
   return result;
 }
 
-// The frame that is integrated over.
-typedef struct {
-  const struct FrameParams* f;
-  const Window* window;
-  global const float* geometry;
-} Surface;
-
 // The integral for the lanes of material m.
-static inline vrgb integrate(const Surface* surface, const Points* p, const Profile* profile, vint mine, int m, int x,
-                             int y) {
+static inline vrgb integrate(const Surface* surface, const Target* target, vint mine, int m, int x, int y) {
   const struct FrameParams* f = surface->f;
   const Window* w = surface->window;
-  global const float* geometry = surface->geometry;
-  const size_t at_p = pixel_at(w, x, y);
-  const vrgb own_light = load_rgb(w->light, w->plane, at_p);
-  const vrgb own = own_share(f, p, profile, load_floats(geometry + at_p), load_floats(geometry + w->plane + at_p),
-                             load_floats(geometry + 2 * w->plane + at_p));
+  const Profile* profile = &target->profile;
+  const Patches patches = patches_at(surface, x, y);
+  const vrgb own_light = load_rgb(w->light, w->plane, pixel_at(w, x, y));
+  const vrgb own = own_share(f, &target->points, profile, patches.slope_x, patches.slope_y, patches.area_mm2);
   Sum sum = {product(own, own_light), own};
   const vrgb reciprocal = profile->reciprocal;
   const vfloat widest = 1.0f / fmin(fmin(reciprocal.r, reciprocal.g), reciprocal.b);
-  const int2 extent = reach(f, p, mine, profile->reach_mm * widest);
+  const int2 extent = reach(f, &target->points, mine, profile->reach_mm * widest);
   for (int dy = max(-extent.y, -y); dy <= min(extent.y, f->height - 1 - y); ++dy) {
     // Each row has a sum of its own: tens of thousands of terms in one float would lose digits.
     const vrgb zero = broadcast_rgb((vfloat)(0.0f));
@@ -110,10 +154,10 @@ static inline vrgb integrate(const Surface* surface, const Points* p, const Prof
       if (!any_bit(same)) continue;
       const int distance = max(abs(dx), abs(dy));
       const int n = distance <= NEAR_4 ? 4 : distance <= NEAR_2 ? 2 : 1;
-      const vrgb average = patch_average(f, p, profile, dx, dy, load_floats(w->depth + at), load_floats(geometry + at),
-                                         load_floats(geometry + w->plane + at), n);
+      const Patches their = patches_at(surface, x + dx, y + dy);
+      const vrgb average = patch_average(f, target, &their, dx, dy, n);
       const vrgb density = product(average, product(reciprocal, reciprocal));
-      const vrgb weight = select_or_zero_rgb(same, times(density, load_floats(geometry + 2 * w->plane + at)));
+      const vrgb weight = select_or_zero_rgb(same, times(density, their.area_mm2));
       row.weight = sum_rgb(row.weight, weight);
       row.light = multiply_add(weight, select_or_zero_rgb(same, load_rgb(w->light, w->plane, at)), row.light);
     }
@@ -123,7 +167,15 @@ static inline vrgb integrate(const Surface* surface, const Points* p, const Prof
 #if SUMS_WEIGHTS
   return sum.light;
 #endif
-  const vrgb result = {sum.light.r / sum.weight.r, sum.light.g / sum.weight.g, sum.light.b / sum.weight.b};
+  vrgb all = sum.weight;
+#if PROJECTED
+  // Where its weights are more than that of a plane, Cycles has more light.
+  if (target->is_projected) {
+    const vfloat one = (vfloat)(1.0f);
+    all = (vrgb){fmin(all.r, one), fmin(all.g, one), fmin(all.b, one)};
+  }
+#endif
+  const vrgb result = {sum.light.r / all.r, sum.light.g / all.g, sum.light.b / all.b};
   return result;
 }
 
@@ -138,14 +190,21 @@ kernel void exact(struct FrameParams f, struct WindowParams window, global uchar
   for (int x = x_begin; x < min(x_begin + columns, f.width); x += V) {
     const size_t at = pixel_at(&w, x, y);
     const vint m = load_bytes(w.material + at);
-    const Points p = points_at(&f, load_floats(w.depth + at), x, y);
+    Target target;
+    target.points = points_at(&f, load_floats(w.depth + at), x, y);
+#if PROJECTED
+    target.axes = axes_about(patches_at(&surface, x, y).normal);
+#endif
     const vrgb reciprocal = width_reciprocal(&w, at);
     vrgb result = load_rgb(w.light, w.plane, at);
     for (int i = 0; i < MATERIALS; ++i) {
       const vint mine = AS_MASK(m == (vint)(i + 1));
       if (!any_bit(mine)) continue;
-      const Profile profile = profile_of(profiles + i, nodes, reciprocal);
-      result = select_rgb(result, integrate(&surface, &p, &profile, mine, i + 1, x, y), mine);
+      target.profile = profile_of(profiles + i, nodes, reciprocal);
+#if PROJECTED
+      target.is_projected = profiles[i].is_projected;
+#endif
+      result = select_rgb(result, integrate(&surface, &target, mine, i + 1, x, y), mine);
     }
     store_deferred(&f, deferred, x, y, result);
   }

@@ -35,14 +35,14 @@ static inline void add(vrgb* sum, vrgb value) {
 // The integral of the cumulated profile at the patch's edge over the angle.
 static inline vrgb own_share(const struct FrameParams* f, const Points* p, const Profile* profile, vfloat slope_x,
                              vfloat slope_y, vfloat area) {
-  const Tangent a = tangent_x(f, p, slope_x);
-  const Tangent b = tangent_y(f, p, slope_y);
+  const Vectors a = tangent_x(f, p, slope_x);
+  const Vectors b = tangent_y(f, p, slope_y);
   vrgb share = {(vfloat)(0.0f), (vfloat)(0.0f), (vfloat)(0.0f)};
   for (int i = 0; i < 16; ++i) {
     // Two of the four edges; the other two are their mirror images.
     const float s = i < 8 ? 0.5f : points_8[i - 8];
     const float t = i < 8 ? points_8[i] : 0.5f;
-    const Tangent edge = {s * a.x + t * b.x, s * a.y + t * b.y, s * a.z + t * b.z};
+    const Vectors edge = {s * a.x + t * b.x, s * a.y + t * b.y, s * a.z + t * b.z};
     const vfloat r_squared = squared_length(edge);
     const vfloat angle = weights_8[i & 7] * 0.5f * area / r_squared;
     const vrgb within = look_up_linear_scaled(profile->nodes, profile->cumulated, r_squared, profile->reciprocal);

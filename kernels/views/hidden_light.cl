@@ -2,6 +2,7 @@
 // does.
 #pragma OPENCL FP_CONTRACT OFF
 #include "integral/own_share.h"
+#include "integral/projection.h"
 
 // A sample is a patch: its light does not come from one point. See METHODS.md.
 #define PATCH 0.08f
@@ -23,11 +24,6 @@ kernel void unit_light(struct FrameParams f, struct FrameLayouts layouts, global
     store_floats(ones + plane_index(&f, x, y), select((vfloat)(NAN), (vfloat)(1.0f), good));
   }
 }
-
-// V vectors, mm, or of unit length.
-typedef struct {
-  vfloat x, y, z;
-} Vectors;
 
 static inline vfloat dot_of(const Vectors* a, float x, float y, float z) { return a->x * x + a->y * y + a->z * z; }
 
@@ -109,7 +105,7 @@ typedef struct {
   Vectors at;
   Vectors normal;
 #if PROJECTED
-  Vectors across[2];  // the normal makes a frame with them
+  Axes axes;
 #endif
 } Target;
 
@@ -135,47 +131,10 @@ static inline Vectors normal_at(const struct FrameParams* f, const InputRows* ro
     }
     slopes[axis] = minmod(select(ways[1], ways[0], counts[0]), select(ways[0], ways[1], counts[1]));
   }
-  const Tangent a = tangent_x(f, &p, slopes[0]);
-  const Tangent b = tangent_y(f, &p, slopes[1]);
-  const Vectors n = {a.z * b.y - a.y * b.z, a.x * b.z - a.z * b.x, a.y * b.x - a.x * b.y};
-  const vfloat shorter = 1.0f / sqrt(n.x * n.x + n.y * n.y + n.z * n.z);
-  const Vectors normal = {n.x * shorter, n.y * shorter, n.z * shorter};
-  return normal;
+  const Vectors a = tangent_x(f, &p, slopes[0]);
+  const Vectors b = tangent_y(f, &p, slopes[1]);
+  return unit_vectors(cross_product(&b, &a));
 }
-
-#if PROJECTED
-// Two unit vectors at right angles to a normal and to each other.
-static inline void make_frame(Target* target) {
-  const Vectors n = target->normal;
-  const vint is_diagonal = AS_MASK(n.x == n.y) & AS_MASK(n.x == n.z);
-  Vectors t = {n.z - n.y, select(n.x - n.z, n.x + n.z, is_diagonal), select(n.y - n.x, -n.y - n.x, is_diagonal)};
-  const vfloat shorter = 1.0f / sqrt(t.x * t.x + t.y * t.y + t.z * t.z);
-  const Vectors first = {t.x * shorter, t.y * shorter, t.z * shorter};
-  const Vectors second = {n.y * first.z - n.z * first.y, n.z * first.x - n.x * first.z, n.x * first.y - n.y * first.x};
-  target->across[0] = first;
-  target->across[1] = second;
-}
-
-// How Cycles samples a profile: a distance is drawn on a plane across the normal (half of the time) or along it, and
-// projected to the surface. All three could have found a point, and are weighed by the power heuristic, but the change
-// of area is left out: R(r) is multiplied by r sum_a w_a / r_a, with the distance r_a as axis a sees it.
-static inline vfloat projection_factor(const Target* target, global const struct HiddenSample* sample, Vectors way,
-                                       vfloat r_squared) {
-  const Vectors axes[3] = {target->normal, target->across[0], target->across[1]};
-  // A sample is a patch, which no axis sees as a point.
-  const vfloat softened = r_squared + 0.05f * sample->area_mm2;
-  vfloat sum = (vfloat)(0.0f);
-  vfloat all = (vfloat)(1e-12f);
-  for (int a = 0; a < 3; ++a) {
-    const vfloat chance =
-        (a == 0 ? 0.5f : 0.25f) * fabs(dot_of(&axes[a], sample->normal[0], sample->normal[1], sample->normal[2]));
-    const vfloat along = axes[a].x * way.x + axes[a].y * way.y + axes[a].z * way.z;
-    sum += chance * chance / sqrt(fmax(softened - along * along, (vfloat)(1e-8f)));
-    all += chance * chance;
-  }
-  return sqrt(softened) * sum / all;
-}
-#endif
 
 #if WALK
 // The gains of slabs of these thicknesses.
@@ -219,10 +178,8 @@ static inline vfloat share_of(global const struct HiddenLevel* level, vfloat r_s
   return t * t * (3.0f - 2.0f * t);
 }
 
-static inline vfloat square_of(Vectors a) { return fma(a.x, a.x, fma(a.y, a.y, a.z * a.z)); }
-
 // The way to a place in a sample, which is a and b times half of a part from its middle.
-static inline Vectors way_to(global const struct HiddenSample* sample, float a, float b, Vectors from) {
+static inline Vectors way_to_part(global const struct HiddenSample* sample, float a, float b, Vectors from) {
   global const float *x = sample->half_x, *y = sample->half_y, *middle = sample->position;
   const Vectors way = {fma(b, y[0], fma(a, x[0], middle[0])) - from.x, fma(b, y[1], fma(a, x[1], middle[1])) - from.y,
                        fma(b, y[2], fma(a, x[2], middle[2])) - from.z};
@@ -233,14 +190,17 @@ static inline Vectors way_to(global const struct HiddenSample* sample, float a, 
 FORCED_INLINE void add_part(Sum* sum, const Profile* profile, global const struct HiddenMaterial* its,
                             const Target* target, global const struct HiddenSample* sample,
                             global const struct HiddenLevel* level, Vectors way) {
-  const vfloat r_squared = square_of(way);
+  const vfloat r_squared = squared_length(way);
   const vint counts = AS_MASK(r_squared > level->from_mm2) & AS_MASK(r_squared < level->to_mm2);
   if (!any_bit(counts)) return;
   const vfloat softened = fma((vfloat)(PATCH), (vfloat)(sample->area_mm2), r_squared);
   const vrgb density = radial_at(profile, softened);
   vfloat area = select_or_zero(counts, share_of(level, r_squared) * sample->area_mm2);
 #if PROJECTED
-  if (its->crossing == CROSSING_PROJECTED) area *= projection_factor(target, sample, way, r_squared);
+  if (its->crossing == CROSSING_PROJECTED) {
+    const Vectors normal = {(vfloat)(sample->normal[0]), (vfloat)(sample->normal[1]), (vfloat)(sample->normal[2])};
+    area *= projection_factor(&target->axes, normal, way, (vfloat)(sample->area_mm2));
+  }
 #endif
   const vrgb weight = times(density, area);
   sum->weight = sum_rgb(sum->weight, weight);
@@ -265,12 +225,12 @@ SHARED void add_samples(Sum* to, const Profile* profile, global const struct Hid
     const int parts = sample->parts;
     if (parts > 1) {  // which may all be too far away
       const float end = level->to_mm + sample->radius_mm;
-      const vfloat r_squared = square_of(way_to(sample, 0.0f, 0.0f, at));
+      const vfloat r_squared = squared_length(way_to_part(sample, 0.0f, 0.0f, at));
       if (!any_bit(AS_MASK(r_squared < end * end))) continue;
     }
     for (int v = 1; v < 2 * parts; v += 2) {
       for (int u = 1; u < 2 * parts; u += 2) {
-        const Vectors way = way_to(sample, (float)(u - parts), (float)(v - parts), at);
+        const Vectors way = way_to_part(sample, (float)(u - parts), (float)(v - parts), at);
         add_part(&sum, profile, its, target, sample, level, way);
       }
     }
@@ -334,7 +294,7 @@ kernel void hidden_light(struct FrameParams f, struct FrameLayouts layouts, glob
         include_points(&its_box, &target.at, mine);
         target.normal = normal_at(&f, &inputs, depth, &layouts.depth, mine, m, x, y);
 #if PROJECTED
-        make_frame(&target);
+        target.axes = axes_about(target.normal);
 #endif
         vrgb reciprocal = broadcast_rgb((vfloat)(1.0f));
 #if PIXEL_WIDTH

@@ -13,6 +13,7 @@
 #include "oracle/frame/light.hpp"
 #include "oracle/frame/surface.hpp"
 #include "oracle/math/gauss_legendre.hpp"
+#include "oracle/math/projection.hpp"
 #include "oracle/math/vec3.hpp"
 
 namespace dermis::oracle {
@@ -26,6 +27,7 @@ struct Pixel {
 
 struct Sample {
   Vec3 position_mm;
+  Vec3 normal;
   double area_mm2;
 };
 
@@ -54,7 +56,8 @@ class Patch {
 
   Vec3 tangent(Axis axis) const { return view_.tangent(axis, x_px_, y_px_, z_mm_, slope_[axis]); }
 
-  double area_mm2() const { return length(cross(tangent(horizontal), tangent(vertical))); }
+  Vec3 across() const { return cross(tangent(vertical), tangent(horizontal)); }
+  double area_mm2() const { return length(across()); }
 
  private:
   static double depth(const Surface& surface, int x, int y) { return surface.at(x, y).position_mm[2].value; }
@@ -72,9 +75,10 @@ using Samples = std::vector<Sample>;
 Samples sample(const Patch& patch, const std::vector<QuadraturePoint>& points, double covered) {
   Samples samples;
   const double area = covered * covered * patch.area_mm2();
+  const Vec3 normal = unit(patch.across());
   for (const QuadraturePoint& v : points) {
     for (const QuadraturePoint& u : points) {
-      samples.push_back({patch.at(u.position, v.position), u.weight * v.weight * area});
+      samples.push_back({patch.at(u.position, v.position), normal, u.weight * v.weight * area});
     }
   }
   return samples;
@@ -147,7 +151,9 @@ class Integral {
         sums[c] += weight[c] * light_(q.x, q.y, c);
       }
     }
-    for (int c = 0; c < 3; ++c) sums[c] /= weights[c];
+    // As Cycles samples it, there is more light where the weights are more than those of a plane.
+    const bool keeps_more = materials_[m].is_projected;
+    for (int c = 0; c < 3; ++c) sums[c] /= keeps_more ? std::min(weights[c], 1.0) : weights[c];
     return {sums, weights};
   }
 
@@ -157,12 +163,16 @@ class Integral {
     const SurfacePixel& pixel = surface_.at(p.x, p.y);
     const Material& material = materials_[pixel.material];
     const Vec3 center{pixel.position_mm[0].value, pixel.position_mm[1].value, pixel.position_mm[2].value};
+    const std::array<Vec3, 3> axes = axes_about(unit(Patch(surface_, p.x, p.y).across()));
     std::array<double, 3> sum{};
     for (const Sample& sample : samples_.at(q, p)) {
-      const double r = length(difference(sample.position_mm, center));
+      const Vec3 way = difference(sample.position_mm, center);
+      const double r = length(way);
+      double area = sample.area_mm2;
+      if (material.is_projected) area *= projection_factor(axes, sample.normal, way, sample.area_mm2);
       for (int c = 0; c < 3; ++c) {
         const double k = pixel.width_factor[c].value;
-        sum[c] += sample.area_mm2 * material.radial(c, r / k) / (k * k);
+        sum[c] += area * material.radial(c, r / k) / (k * k);
       }
     }
     return sum;

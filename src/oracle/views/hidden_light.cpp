@@ -7,6 +7,7 @@
 #include "dermis/oracle/reference.hpp"
 #include "oracle/frame/frame_images.hpp"
 #include "oracle/frame/surface.hpp"
+#include "oracle/math/projection.hpp"
 #include "oracle/math/vec3.hpp"
 #include "oracle/views/patches.hpp"
 #include "oracle/views/walk_crossing.hpp"
@@ -119,29 +120,7 @@ Target target_at(const Surface& surface, int x, int y) {
   for (const Axis axis : {horizontal, vertical}) {
     tangents[axis] = surface.view().tangent(axis, x + 0.5, y + 0.5, at[2].value, surface.depth_slope(x, y, axis).value);
   }
-  const Vec3 n = unit(cross(tangents[1], tangents[0]));
-  // Cycles: util/math.h, make_orthonormals.
-  const bool is_diagonal = n[0] == n[1] && n[0] == n[2];
-  const Vec3 across =
-      is_diagonal ? Vec3{n[2] - n[1], n[0] + n[2], -n[1] - n[0]} : Vec3{n[2] - n[1], n[0] - n[2], n[1] - n[0]};
-  return {{at[0].value, at[1].value, at[2].value}, {n, unit(across), cross(n, unit(across))}};
-}
-
-/// What R(r) is multiplied with so that it is as dense as the samples of Cycles, which are drawn at the distance r_a on
-/// the plane across one of three axes and weighed by the power heuristic, but not for the area that a plane covers: the
-/// density over r is 2 pi r R, and that over the surface has r_a in its place. A patch, of radius^2 = 0.05 A, has no
-/// distance below that.
-double projected(const Target& target, const Sample& sample, const Vec3& way) {
-  const double r2 = dot(way, way) + 0.05 * sample.area_mm2;
-  double weights = 0;
-  double sum = 0;
-  for (int a = 0; a < 3; ++a) {
-    const double chance = (a == 0 ? 0.5 : 0.25) * std::abs(dot(target.axes[a], sample.normal));
-    const double height = dot(target.axes[a], way);
-    weights += chance * chance;
-    sum += chance * chance / std::sqrt(r2 - height * height);
-  }
-  return std::sqrt(r2) * sum / weights;
+  return {{at[0].value, at[1].value, at[2].value}, axes_about(unit(cross(tangents[1], tangents[0])))};
 }
 
 double area_of(const std::vector<Sample>& samples) {
@@ -178,7 +157,8 @@ HiddenLight hidden_light(const Frame& frame, std::span<const Material> materials
       for (const Sample& sample : samples[pixel.material]) {
         const Vec3 way = difference(sample.position, target.position);
         const double r_mm = std::sqrt(dot(way, way) + 0.08 * sample.area_mm2);
-        const double area = sample.area_mm2 * (material.is_projected ? projected(target, sample, way) : 1);
+        double area = sample.area_mm2;
+        if (material.is_projected) area *= projection_factor(target.axes, sample.normal, way, sample.area_mm2);
         for (int c = 0; c < 3; ++c) {
           const double k = pixel.width_factor[c].value;
           const double weight = area * material.radial(c, r_mm / k) / (k * k);

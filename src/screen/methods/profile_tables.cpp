@@ -36,6 +36,7 @@ void ProfileTables::upload(const cl::Context& context, const std::vector<Materia
     row.reach_mm = static_cast<float>(reach_mm);
     row.radial = append([&](int c, double r) { return profile.radial(c, r); });
     row.cumulated = append([&](int c, double r) { return profile.cdf(c, r); });
+    row.is_projected = profile.is_projected() ? 1 : 0;
     rows.push_back(row);
   }
   profiles = dermis::upload(context, rows);

@@ -1,4 +1,6 @@
 // The surface integral over all visible pixels of a material. The kernels are in kernels/integral/exact.cl.
+#include <algorithm>
+
 #include "opencl/program.hpp"
 #include "screen/frame_run.hpp"
 #include "screen/methods/profile_tables.hpp"
@@ -17,7 +19,11 @@ class SurfaceIntegral final : public ScatterMethod {
   using ScatterMethod::ScatterMethod;
 
   ProgramSource kernels(int) const override {
-    return {{"frame/prepare.cl", "integral/exact.cl"}, profile_table_constant()};
+    const auto& materials = settings_.materials;
+    const bool has_projected =
+        std::any_of(materials.begin(), materials.end(), [](const Material& its) { return its.profile.is_projected(); });
+    return {{"frame/prepare.cl", "integral/exact.cl"},
+            profile_table_constant() + build_constant("PROJECTED", has_projected ? 1 : 0)};
   }
 
   int rows_per_step(int) const override { return 16; }
