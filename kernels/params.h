@@ -303,11 +303,18 @@ struct TableParams {
   int last_bits;   // bits of the last node less first_bits
 };
 
+// The factor by which the albedo A of a pixel scales a profile: a cubic over a quadratic, by rising powers of A.
+struct WidthParams {
+  int follows_albedo;  // else it is 1
+  float numerator[4];
+  float denominator[3];
+};
+
 // One material.
 struct MaterialParams {
   float radius_mm;  // of the taps
   float relative_width[3];
-  int width_follows_albedo;
+  struct WidthParams width;
   int id;
   int first_level;
   int levels;
@@ -319,6 +326,7 @@ struct ProfileParams {
   float reach_mm;                // no light comes from farther away
   struct TableParams radial;     // R(r)
   struct TableParams cumulated;  // the light within r
+  int is_projected;              // Profile::is_projected
 };
 
 // Where the tables of taps begin in their buffer, bytes.
@@ -414,7 +422,7 @@ struct TranslucencyParams {
 // One material of the transmitted light.
 struct SlabParams {
   int id;
-  int width_follows_albedo;
+  struct WidthParams width;
   struct TableParams transmittance;  // T(s)
 };
 

@@ -53,7 +53,7 @@ std::vector<oracle::Material> materials_for_oracle(const std::vector<Material>& 
   result.reserve(materials.size());
   for (const Material& material : materials) {
     result.push_back({material.id,
-                      material.profile.width_follows_albedo(),
+                      material.profile.albedo_width(),
                       make_taps(material.profile, material.taps.value_or(options.taps)),
                       {},
                       {}});

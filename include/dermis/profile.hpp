@@ -27,6 +27,15 @@ struct TableRow {
   Rgb value;    ///< R(r) of each channel on any scale, >= 0
 };
 
+/// The factor k by which the albedo A of a pixel, clamped to 0..1, scales a profile: the profile there is R(r / k) /
+/// k^2. A cubic over a quadratic, by rising powers of A, both above 0 in 0..1.
+struct AlbedoWidth {
+  std::array<double, 4> numerator;
+  std::array<double, 3> denominator;
+
+  bool operator==(const AlbedoWidth&) const = default;
+};
+
 class RadialCurve;  // one channel of a profile; not for callers
 
 /// A radially symmetric diffusion profile R(r) in 1/mm^2 with unit integral over the plane in every
@@ -55,6 +64,10 @@ class Profile {
   /// Cycles calls "Subsurface Radius" and a constant albedo, which set its mean free path and what each scattering
   /// absorbs. A table of walks, whose cdf is off by 6e-4 at most. `radius_mm` in 1e-9..1e9; `albedo` in [0, 1].
   static Profile random_walk_cycles(const Rgb& radius_mm, const Rgb& albedo);
+
+  /// The same with the albedo of each pixel: the walk of an albedo of 0.6, scaled so that its mean distance is that of
+  /// the pixel's albedo, to 2 % in the mean of 0.05..0.8. The frame has to carry an albedo image.
+  static Profile random_walk_cycles(const Rgb& radius_mm);
 
   /// The same from the mean free path itself.
   static Profile random_walk_mfp(const Rgb& mfp_mm, const Rgb& albedo);
@@ -141,15 +154,17 @@ class Profile {
 
   /// True if a pixel's albedo sets how wide the profile is there: the profile of a pixel is then
   /// R(r / k) / k^2 with k = width_at(albedo) per channel.
-  bool width_follows_albedo() const { return width_follows_albedo_; }
+  bool width_follows_albedo() const { return albedo_width_.has_value(); }
+  const std::optional<AlbedoWidth>& albedo_width() const { return albedo_width_; }
 
   /// The same profile for surfaces that bend or lie across from each other as Cycles samples it: by distances on three
   /// planes, projected to the surface, without the change of area. Then more light comes through thin parts than by the
-  /// distance in space. It tells for the light of views alone.
+  /// distance in space. It tells for the exact method and for the light of views.
   Profile projected() const;
   bool is_projected() const { return is_projected_; }
 
-  /// k for an albedo (clamped to 0..1): 1 / s(A) where the width follows the albedo, else 1.
+  /// k for an albedo (clamped to 0..1), of which that of Burley's profile is 1 / s(A); 1 if the width does not follow
+  /// it.
   double width_at(double albedo) const;
 
  private:
@@ -161,7 +176,7 @@ class Profile {
   std::array<std::shared_ptr<const RadialCurve>, 3> curves_;
   std::optional<Rgb> mfp_mm_;
   std::optional<Rgb> scattering_albedo_;
-  bool width_follows_albedo_ = false;
+  std::optional<AlbedoWidth> albedo_width_;
   bool is_projected_ = false;
 };
 

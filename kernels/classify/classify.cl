@@ -82,7 +82,7 @@ FORCED_INLINE PixelRow read_row(const struct FrameParams* f, const FrameInputs* 
     const vrgb k = width_factor(materials + i, albedo, mask);
     row.k = select_rgb(row.k, k, mine);
 #if HAS_ALBEDO
-    if (materials[i].width_follows_albedo) {
+    if (materials[i].width.follows_albedo) {
       row.material &= ~mine | is_finite(albedo);
     }
 #endif

@@ -2,10 +2,17 @@
 // profile.
 #include "frame/image.h"
 
-// Christensen and Burley 2015, eq. 6.
-static inline vfloat shape_factor(vfloat albedo) {
+static inline vfloat width_at(global const struct WidthParams* its, vfloat albedo) {
+  global const float *over = its->numerator, *under = its->denominator;
   const vfloat a = clamp(albedo, (vfloat)(0.0f), (vfloat)(1.0f));
-  return 1.9f - a + 3.5f * (a - 0.8f) * (a - 0.8f);
+  return (over[0] + a * (over[1] + a * (over[2] + a * over[3]))) / (under[0] + a * (under[1] + a * under[2]));
+}
+
+// Scales a profile whose width follows the albedo.
+static inline vrgb scale_by_albedo(global const struct WidthParams* its, vrgb k, vrgb albedo) {
+  if (!its->follows_albedo) return k;
+  const vrgb scaled = {k.r * width_at(its, albedo.r), k.g * width_at(its, albedo.g), k.b * width_at(its, albedo.b)};
+  return scaled;
 }
 
 #if HAS_MATTE
@@ -19,15 +26,12 @@ static inline vfloat share_of_surface(Row matte, int x) {
 
 // The factor by which an albedo and a mask scale the profile of one material.
 static inline vrgb width_factor(global const struct MaterialParams* its, vrgb albedo, vfloat mask) {
-  vrgb k = broadcast_rgb(fmin(mask, (vfloat)(1.0f)));
+  const vrgb k = broadcast_rgb(fmin(mask, (vfloat)(1.0f)));
 #if HAS_ALBEDO
-  if (its->width_follows_albedo) {
-    k.r /= shape_factor(albedo.r);
-    k.g /= shape_factor(albedo.g);
-    k.b /= shape_factor(albedo.b);
-  }
-#endif
+  return scale_by_albedo(&its->width, k, albedo);
+#else
   return k;
+#endif
 }
 
 // The width of the widest channel of a material whose profile is scaled by k.

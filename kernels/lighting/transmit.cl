@@ -31,11 +31,7 @@ static inline int material_at(global const struct SlabParams* slabs, global cons
 static inline vrgb width_reciprocal(global const struct SlabParams* slab, vrgb albedo, float mask) {
   vrgb k = broadcast_rgb(fmin(mask, 1.0f));
 #if HAS_ALBEDO
-  if (slab->width_follows_albedo) {
-    k.r /= shape_factor(albedo.r);
-    k.g /= shape_factor(albedo.g);
-    k.b /= shape_factor(albedo.b);
-  }
+  k = scale_by_albedo(&slab->width, k, albedo);
 #endif
   const vrgb reciprocal = {1.0f / k.r, 1.0f / k.g, 1.0f / k.b};
   return reciprocal;

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "opencl/linear_table.hpp"
+#include "opencl/width_params.hpp"
 
 namespace dermis {
 
@@ -28,7 +29,7 @@ LinearTable tabulate_transmittance(const Profile& profile) {
 SlabTables make_slab_tables(const std::vector<Material>& materials) {
   SlabTables tables;
   for (const Material& material : materials) {
-    tables.materials.push_back({material.id, material.profile.width_follows_albedo() ? 1 : 0,
+    tables.materials.push_back({material.id, width_params(material.profile),
                                 append_table(tabulate_transmittance(material.profile), tables.nodes)});
   }
   return tables;

@@ -105,6 +105,14 @@ void require_rows(const std::vector<TableRow>& rows) {
 /// Christensen and Burley 2015, eq. 6.
 double shape_factor(double albedo) { return 1.9 - albedo + 3.5 * (albedo - 0.8) * (albedo - 0.8); }
 
+/// 1 / s(A), with the brackets of s(A) opened.
+constexpr AlbedoWidth burley_width = {{1, 0, 0, 0}, {1.9 + 3.5 * 0.8 * 0.8, -1 - 2 * 3.5 * 0.8, 3.5}};
+
+/// The mean distance of a walk over that for `walk_middle`, fitted to walk_table.
+constexpr double walk_middle = 0.6;
+constexpr AlbedoWidth walk_width = {{0.965 / 0.295016, -2.11 / 0.295016, 2.42 / 0.295016, -1.274 / 0.295016},
+                                    {1, 0, 0}};
+
 /// The mean free path of a Cycles radius, of Burley's profile.
 Rgb burley_path(const Rgb& radius_mm) {
   return {radius_mm[0] / (4 * pi), radius_mm[1] / (4 * pi), radius_mm[2] / (4 * pi)};
@@ -160,7 +168,7 @@ Profile Profile::burley_cycles(const Rgb& radius_mm) {
   require_lengths(radius_mm, "radius_mm");
   const Rgb mfp_mm = burley_path(radius_mm);
   Profile profile(for_each_channel([&](int c) { return std::make_shared<BurleyCurve>(mfp_mm[c]); }), mfp_mm);
-  profile.width_follows_albedo_ = true;
+  profile.albedo_width_ = burley_width;
   return profile;
 }
 
@@ -170,6 +178,12 @@ Profile Profile::random_walk_cycles(const Rgb& radius_mm, const Rgb& albedo) {
   Rgb mfp_mm{};
   for (std::size_t c = 0; c < 3; ++c) mfp_mm[c] = walk_mfp(radius_mm[c], albedo[c]);
   return walk_of(mfp_mm, albedo);
+}
+
+Profile Profile::random_walk_cycles(const Rgb& radius_mm) {
+  Profile profile = random_walk_cycles(radius_mm, {walk_middle, walk_middle, walk_middle});
+  profile.albedo_width_ = walk_width;
+  return profile;
 }
 
 Profile Profile::random_walk_mfp(const Rgb& mfp_mm, const Rgb& albedo) {
@@ -262,8 +276,8 @@ Profile Profile::tabulated(const std::vector<TableRow>& rows) {
 
 bool Profile::operator==(const Profile& other) const {
   const auto same = [](const auto& a, const auto& b) { return a == b || *a == *b; };
-  return width_follows_albedo_ == other.width_follows_albedo_ && is_projected_ == other.is_projected_ &&
-         mfp_mm_ == other.mfp_mm_ && scattering_albedo_ == other.scattering_albedo_ &&
+  return albedo_width_ == other.albedo_width_ && is_projected_ == other.is_projected_ && mfp_mm_ == other.mfp_mm_ &&
+         scattering_albedo_ == other.scattering_albedo_ &&
          std::equal(curves_.begin(), curves_.end(), other.curves_.begin(), same);
 }
 
@@ -274,7 +288,10 @@ ProfileContent content_of(const Profile& profile) {
     content.kinds[c] = typeid(curve).name();
     content.numbers[c] = curve.numbers();
   }
-  content.width_follows_albedo = profile.width_follows_albedo_;
+  if (const auto& width = profile.albedo_width_) {
+    content.albedo_width.assign(width->numerator.begin(), width->numerator.end());
+    content.albedo_width.insert(content.albedo_width.end(), width->denominator.begin(), width->denominator.end());
+  }
   content.is_projected = profile.is_projected_;
   return content;
 }
@@ -341,7 +358,10 @@ int Profile::widest_channel() const {
 }
 
 double Profile::width_at(double albedo) const {
-  return width_follows_albedo_ ? 1 / shape_factor(std::clamp(albedo, 0.0, 1.0)) : 1;
+  if (!albedo_width_) return 1;
+  const auto& [over, under] = *albedo_width_;
+  const double a = std::clamp(albedo, 0.0, 1.0);
+  return (over[0] + a * (over[1] + a * (over[2] + a * over[3]))) / (under[0] + a * (under[1] + a * under[2]));
 }
 
 }  // namespace dermis

@@ -13,7 +13,7 @@ namespace dermis {
 struct ProfileContent {
   std::array<std::string, 3> kinds;  ///< of the curve of each channel: a name that holds for one build of the library
   std::array<std::vector<double>, 3> numbers;  ///< that the curve is made of
-  bool width_follows_albedo = false;
+  std::vector<double> albedo_width;            ///< of an AlbedoWidth; none where there is none
   bool is_projected = false;
 };
 

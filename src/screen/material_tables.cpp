@@ -5,6 +5,7 @@
 #include <future>
 
 #include "opencl/device_cache.hpp"
+#include "opencl/width_params.hpp"
 #include "taps/kept/kept_taps.hpp"
 
 namespace dermis {
@@ -136,7 +137,7 @@ MaterialTables make_material_tables(const PlanSettings& settings, const DesignOf
     params::MaterialParams row{};
     row.radius_mm = static_cast<float>(taps.radius_mm);
     std::copy(taps.relative_width.begin(), taps.relative_width.end(), row.relative_width);
-    row.width_follows_albedo = materials[i].profile.width_follows_albedo() ? 1 : 0;
+    row.width = width_params(materials[i].profile);
     row.id = materials[i].id;
     row.first_level = static_cast<int>(tables.levels.size());
     row.levels = static_cast<int>(taps.levels.size());

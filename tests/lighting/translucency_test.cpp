@@ -112,7 +112,7 @@ Outputs run(const Device& device, Case& its) {
 std::vector<dermis::oracle::Slab> slabs_of(const std::vector<Material>& materials) {
   std::vector<dermis::oracle::Slab> slabs;
   for (const Material& material : materials) {
-    slabs.push_back({material.id, material.profile.width_follows_albedo(),
+    slabs.push_back({material.id, material.profile.albedo_width(),
                      [profile = material.profile](int c, double s) { return profile.transmittance(c, s); }});
   }
   return slabs;

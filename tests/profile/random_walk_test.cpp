@@ -147,6 +147,28 @@ TEST_CASE("the mean distance of random walks beside Burley's", "[profile][walk]"
   }
 }
 
+TEST_CASE("the width of a random walk follows the albedo as its mean distance does", "[profile][walk]") {
+  const auto mean_mm = [](const Profile& profile) {
+    return adaptive_integral([&](double r) { return profile.transmittance(0, r); }, 0, profile.radius(0, 1 - 1e-13));
+  };
+  const Profile per_pixel = Profile::random_walk_cycles({9, 1, 1});
+  const double middle_mm = mean_mm(per_pixel);
+  double squares = 0;
+  int count = 0;
+  for (double albedo = 0.05; albedo < 0.81; albedo += 0.05) {
+    const double constant_mm = mean_mm(Profile::random_walk_cycles({9, 1, 1}, {albedo, 1, 1}));
+    const double off = per_pixel.width_at(albedo) * middle_mm / constant_mm - 1;
+    CAPTURE(albedo, off);
+    CHECK(std::abs(off) < 0.06);
+    squares += off * off;
+    ++count;
+  }
+  CHECK(std::sqrt(squares / count) < 0.02);
+  CHECK(per_pixel.width_at(0.6) == Approx(1).epsilon(1e-6));
+  CHECK(per_pixel.width_at(1) > 0);
+  CHECK(per_pixel.width_follows_albedo());
+}
+
 TEST_CASE("the radius of a random walk means what it means in Cycles", "[profile][walk]") {
   Random random(132);
   for (int i = 0; i < 50; ++i) {

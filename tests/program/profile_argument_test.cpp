@@ -98,8 +98,8 @@ TEST_CASE("results name the file of a table without its folders") {
 TEST_CASE("help tells every kind of profile") {
   const std::string help = run_well({"filter", "--help"});
   for (const char* kind : {"burley:DR/DG/DB", "burley:RR/RG/RB,cycles", "burley:LR/LG/LB,mfp,albedo=AR/AG/AB",
-                           "walk:RR/RG/RB,albedo=AR/AG/AB", "walk:LR/LG/LB,mfp,albedo=AR/AG/AB", "gaussians:FILE.json",
-                           "artist:NR/NG/NB,FR/FG/FB,w=W", "dipole:SR/SG/SB,AR/AG/AB[,eta=E]",
+                           "walk:RR/RG/RB ", "walk:RR/RG/RB,albedo=AR/AG/AB", "walk:LR/LG/LB,mfp,albedo=AR/AG/AB",
+                           "gaussians:FILE.json", "artist:NR/NG/NB,FR/FG/FB,w=W", "dipole:SR/SG/SB,AR/AG/AB[,eta=E]",
                            "better-dipole:SR/SG/SB,AR/AG/AB[,eta=E]", "table:FILE.csv"}) {
     INFO(kind);
     CHECK(help.find(kind) != std::string::npos);
@@ -117,8 +117,8 @@ TEST_CASE("misspelled profiles are usage errors") {
       {"burley:1/2/3,mfp", {"burley:R/G/B,mfp,albedo=R/G/B"}},
       {"burley:1/2/3,mfp,albedo=1/2/1", {"albedo=1/2/1", "0 to 1"}},
       {"burley:1/2/3,mfp,x=1/1/1", {"x=1", "albedo="}},
-      {"walk", {"walk:R/G/B[,mfp],albedo=R/G/B"}},
-      {"walk:1/2/3", {"walk:R/G/B,albedo=R/G/B", "walk:12/7/2,albedo=0.8/0.55/0.2"}},
+      {"walk", {"walk:R/G/B[[,mfp],albedo=R/G/B]"}},
+      {"walk:1/2/3,albedo=1/1/1,mfp", {"walk:R/G/B,albedo=R/G/B", "walk:12/7/2,albedo=0.8/0.55/0.2"}},
       {"walk:1/2/0,albedo=1/1/1", {"> 0"}},
       {"walk:1/2/3,cycles,albedo=1/1/1", {"walk:R/G/B,mfp,albedo=R/G/B"}},
       {"walk:1/2/3,mfp", {"albedo= and three numbers from 0 to 1"}},

@@ -10,8 +10,7 @@ inline std::vector<dermis::oracle::Material> oracle_materials(const std::vector<
   std::vector<dermis::oracle::Material> result;
   for (const dermis::Material& material : materials) {
     const dermis::Profile& profile = material.profile;
-    result.push_back({material.id, profile.width_follows_albedo(),
-                      dermis::make_taps(profile, material.taps.value_or(taps)),
+    result.push_back({material.id, profile.albedo_width(), dermis::make_taps(profile, material.taps.value_or(taps)),
                       [profile](int c, double r) { return profile.radial(c, r); },
                       [profile](int c, double r) { return profile.cdf(c, r); }, profile.is_projected()});
     if (!profile.scattering_albedo(0)) continue;

@@ -10,7 +10,7 @@ namespace {
 
 Profile random_profile(Random& random, bool albedo) {
   const auto length = [&] { return std::exp(random.uniform(std::log(0.1), std::log(1.5))); };
-  switch (random.integer(0, albedo ? 4 : 3)) {
+  switch (random.integer(0, albedo ? 5 : 3)) {
     case 0:
       return dermis::preset("skin").profile;
     case 1:
@@ -21,6 +21,8 @@ Profile random_profile(Random& random, bool albedo) {
       return Profile::random_walk_cycles(
           {10 * length(), 10 * length(), 10 * length()},
           {random.uniform(0.2, 0.9), random.uniform(0.2, 0.9), random.uniform(0.2, 0.9)});
+    case 4:
+      return Profile::random_walk_cycles({10 * length(), 10 * length(), 10 * length()});
     default:
       return Profile::burley_cycles({10 * length(), 10 * length(), 10 * length()});
   }

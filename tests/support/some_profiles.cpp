@@ -54,6 +54,7 @@ std::vector<SomeProfile> profiles_of_every_kind(unsigned salt, double mm) {
   profiles.push_back({"burley_mfp", Profile::burley_mfp(lengths(), shares())});
   profiles.push_back({"burley_cycles", Profile::burley_cycles(lengths())});
   profiles.push_back({"random_walk_cycles", Profile::random_walk_cycles(lengths(), shares())});
+  profiles.push_back({"random_walk_cycles, the albedo of each pixel", Profile::random_walk_cycles(lengths())});
   profiles.push_back({"random_walk_mfp", Profile::random_walk_mfp(lengths(), shares())});
   profiles.push_back({"gaussians", Profile::gaussians({{variance(), {1, 2, 3}}, {variance(), {4, 0, 1}}})});
   profiles.push_back({"artist", Profile::artist(lengths(), lengths(), random.uniform(0.01, 0.99))});

@@ -101,10 +101,11 @@ Profile parse_walk(const Spelling& spelling) {
   const auto parts = split(spelling.rest(), ',');
   const auto lengths = parse_rgb(parts[0]);
   const bool path = parts.size() == 3 && parts[1] == "mfp";
-  if (!lengths || !all_above_zero(*lengths) || (parts.size() != 2 && !path))
+  if (!lengths || !all_above_zero(*lengths) || (parts.size() > 2 && !path))
     spelling.malformed(
-        "walk:R/G/B,albedo=R/G/B or walk:R/G/B,mfp,albedo=R/G/B, lengths in mm, each > 0, as "
+        "walk:R/G/B, walk:R/G/B,albedo=R/G/B or walk:R/G/B,mfp,albedo=R/G/B, lengths in mm, each > 0, as "
         "walk:12/7/2,albedo=0.8/0.55/0.2");
+  if (parts.size() == 1) return Profile::random_walk_cycles(*lengths);
   const Rgb albedo = parse_albedo(spelling, parts.back());
   return path ? Profile::random_walk_mfp(*lengths, albedo) : Profile::random_walk_cycles(*lengths, albedo);
 }
@@ -164,10 +165,11 @@ constexpr std::array kinds = {
          "                             the same with a constant albedo\n"
          "  burley:LR/LG/LB,mfp,albedo=AR/AG/AB\n"
          "                             mean free path in mm and albedo\n"
-         "  burley:...,projected       with --view: as Cycles samples it, which lets more through\n"},
-    Kind{"walk:", parse_walk, false, "walk:R/G/B[,mfp],albedo=R/G/B",
+         "  burley:...,projected       with --view or --method exact: as Cycles samples it\n"},
+    Kind{"walk:", parse_walk, false, "walk:R/G/B[[,mfp],albedo=R/G/B]",
+         "  walk:RR/RG/RB              Cycles' random walk, by subsurface radius in mm and the albedo of each pixel\n"
          "  walk:RR/RG/RB,albedo=AR/AG/AB\n"
-         "                             Cycles' random walk, by subsurface radius in mm and constant albedo\n"
+         "                             the same with a constant albedo\n"
          "  walk:LR/LG/LB,mfp,albedo=AR/AG/AB\n"
          "                             the same by mean free path in mm\n"},
     Kind{"gaussians:", parse_gaussians, true, "gaussians:FILE.json",

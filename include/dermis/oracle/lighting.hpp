@@ -3,9 +3,11 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <span>
 
 #include "dermis/oracle/picture.hpp"
+#include "dermis/profile.hpp"
 #include "dermis/shading.hpp"
 #include "dermis/translucency.hpp"
 
@@ -18,7 +20,7 @@ double transmittance(const std::function<double(double r_mm)>& radial, double th
 /// A material, as transmitted light needs it.
 struct Slab {
   int id = 0;
-  bool width_follows_albedo = false;
+  std::optional<AlbedoWidth> albedo_width;
   std::function<double(int channel, double thickness_mm)> transmittance;
 };
 

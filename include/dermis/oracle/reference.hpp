@@ -10,6 +10,7 @@
 #include "dermis/frame.hpp"
 #include "dermis/oracle/picture.hpp"
 #include "dermis/plan.hpp"
+#include "dermis/profile.hpp"
 #include "dermis/tap_tables.hpp"
 
 namespace dermis::oracle {
@@ -24,7 +25,7 @@ struct WalkMedium {
 /// they use only the radii, to find the kernels that are narrower than half a pixel.
 struct Material {
   int id = 0;
-  bool width_follows_albedo = false;
+  std::optional<AlbedoWidth> albedo_width;  ///< Profile::albedo_width
   Taps taps;
   std::function<double(int channel, double r_mm)> radial;  ///< R(r), 1/mm^2
   std::function<double(int channel, double r_mm)> cdf;     ///< share of the light within r, 0..1

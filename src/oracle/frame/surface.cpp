@@ -20,7 +20,7 @@ void check(const FrameImages& images, std::span<const Material> materials) {
                 "one, as the frame has no material ids");
   }
   const bool needs_albedo = std::any_of(materials.begin(), materials.end(),
-                                        [](const Material& material) { return material.width_follows_albedo; });
+                                        [](const Material& material) { return material.albedo_width.has_value(); });
   if (needs_albedo && !is_there(images.albedo)) {
     throw Error(ErrorCode::role_missing, "frame.albedo", "no image", "the albedo that a profile's width follows");
   }
@@ -61,20 +61,26 @@ int material_by_id(const FrameImages& images, std::span<const Material> material
 int material_at(const FrameImages& images, const View& view, std::span<const Material> materials, int x, int y) {
   if (!is_surface(images, view, x, y)) return -1;
   const int m = material_by_id(images, materials, x, y);
-  return m >= 0 && materials[m].width_follows_albedo && !has_albedo(images, x, y) ? -1 : m;
+  return m >= 0 && materials[m].albedo_width && !has_albedo(images, x, y) ? -1 : m;
 }
 
-/// Returns s(A) of Christensen and Burley, Approximate Reflectance Profiles, 2015, eq. 6.
-Bounded burley_scale(Bounded albedo) {
-  const Bounded from_middle = albedo - as_float(0.8);
-  return as_float(1.9) - albedo + exact(3.5) * from_middle * from_middle;
+/// Returns c_0 + A (c_1 + A (c_2 + ...)), with coefficients rounded to float32.
+template <std::size_t count>
+Bounded polynomial(const std::array<double, count>& coefficients, Bounded albedo) {
+  Bounded sum = as_float(coefficients[count - 1]);
+  for (std::size_t i = count - 1; i-- > 0;) sum = as_float(coefficients[i]) + albedo * sum;
+  return sum;
 }
 
 std::array<Bounded, 3> width_factor(const FrameImages& images, const Material& material, int x, int y) {
   const Bounded mask = exact(is_there(images.mask) ? std::min(images.mask(x, y), 1.0) : 1);
-  if (!material.width_follows_albedo) return {mask, mask, mask};
+  if (!material.albedo_width) return {mask, mask, mask};
   std::array<Bounded, 3> factor;
-  for (int c = 0; c < 3; ++c) factor[c] = mask / burley_scale(exact(std::clamp(images.albedo(x, y, c), 0.0, 1.0)));
+  for (int c = 0; c < 3; ++c) {
+    const Bounded albedo = exact(std::clamp(images.albedo(x, y, c), 0.0, 1.0));
+    factor[c] = mask * (polynomial(material.albedo_width->numerator, albedo) /
+                        polynomial(material.albedo_width->denominator, albedo));
+  }
   return factor;
 }
 

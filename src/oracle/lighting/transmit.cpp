@@ -19,10 +19,10 @@ struct Images {
   Picture light, albedo, position, normal, material, mask, thickness, beauty;
 };
 
-/// Returns the width 1 / s(A) of Christensen and Burley, Approximate Reflectance Profiles, 2015, eq. 6.
-double burley_width(double albedo) {
+double width_at(const AlbedoWidth& width, double albedo) {
   const double a = std::clamp(albedo, 0.0, 1.0);
-  return 1 / (1.9 - a + 3.5 * (a - 0.8) * (a - 0.8));
+  const auto& [n, d] = width;
+  return (n[0] + n[1] * a + n[2] * a * a + n[3] * a * a * a) / (d[0] + d[1] * a + d[2] * a * a);
 }
 
 class Transmission {
@@ -76,7 +76,7 @@ class Transmission {
     }
     if (thickness_mm) thickness_mm = std::max(*thickness_mm, 0.0) * options_.thickness_scale;
     for (int c = 0; c < 3; ++c) {
-      const double width = (slab->width_follows_albedo ? burley_width(albedo[c]) : 1) * std::min(mask, 1.0);
+      const double width = (slab->albedo_width ? width_at(*slab->albedo_width, albedo[c]) : 1) * std::min(mask, 1.0);
       const auto through = [&](double mm) { return slab->transmittance(c, mm / width); };
       const Bounded more = channel(through, c, point, unit(normal), thickness_mm);
       if (more.value > 0) all.touched(x, y) = 1;

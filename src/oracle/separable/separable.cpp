@@ -267,7 +267,7 @@ Outcome Pass::finished(const Outcome& values, std::span<const Term> terms) const
 /// Returns whether no pixel has a width of its own and no tap is rotated.
 bool may_be_flat(const FrameImages& images, std::span<const Material> materials, const Options& options) {
   return !is_there(images.mask) && options.jitter == 0 &&
-         std::none_of(materials.begin(), materials.end(), [](const Material& m) { return m.width_follows_albedo; });
+         std::none_of(materials.begin(), materials.end(), [](const Material& m) { return m.albedo_width.has_value(); });
 }
 
 std::size_t most_terms(std::span<const Material> materials) {

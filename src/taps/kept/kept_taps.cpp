@@ -52,7 +52,7 @@ void fields(auto& bytes, const TapsDesign& its) {
 }
 
 void fields(auto& bytes, const ProfileContent& its) {
-  bytes(its.kinds, its.numbers, its.width_follows_albedo, its.is_projected);
+  bytes(its.kinds, its.numbers, its.albedo_width, its.is_projected);
 }
 
 namespace {

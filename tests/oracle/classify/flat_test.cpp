@@ -153,7 +153,7 @@ TEST_CASE("pixels with widths of their own and rotated taps are never flat", "[f
   with_albedo.material.assign(made.pixels(), 1);
   std::vector materials{material, telling_material(5, 2)};
   CHECK(told(run_as_is(with_albedo, materials), 8, 2, false) == level_for(5));
-  materials[1].width_follows_albedo = true;
+  materials[1].albedo_width = Profile::burley_cycles({1, 1, 1}).albedo_width();
   CHECK(told(run_as_is(with_albedo, materials), 8, 2, false) == not_flat);
 }
 

@@ -93,7 +93,7 @@ TEST_CASE("the depth of a bad pixel counts for the slope of its neighbours", "[b
   made.albedo.assign(9, 0.8F);
   made.albedo[8] = nan;
   CHECK(run(never_flat(made), material).scattered(0, 0) == Approx((centre * 1 + near * 10) / (centre + near)));
-  material.width_follows_albedo = true;
+  material.albedo_width = Profile::burley_cycles({1, 1, 1}).albedo_width();
   const double far = 1.1 * 0.25 / (1.25 * 1.21) * std::hypot(1, 0.5);
   const double narrower = 1 - 0.5 / (1.1 * std::hypot(1, 0.5));
   CHECK(run(made, material).scattered(0, 0) == Approx((narrower * 1 + far * 10) / (narrower + far)));

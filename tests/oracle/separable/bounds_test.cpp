@@ -46,7 +46,7 @@ TEST_CASE("float32 stays within the bounds on random frames", "[bounds]") {
     const int* size = sizes[round % 6];
     const bool plain = round / 6 % 2 == 0;
     std::vector materials{level_material(1, 0, 1), level_material(0.4, 1, 2)};
-    materials[1].width_follows_albedo = !plain;
+    if (!plain) materials[1].albedo_width = Profile::burley_cycles({1, 1, 1}).albedo_width();
     if (round >= 6) {
       add_terms(random, materials[0].taps, 3);
       add_terms(random, materials[1].taps, 2);

@@ -102,7 +102,7 @@ TEST_CASE("materials do not mix", "[separable]") {
 
 TEST_CASE("the width may follow the albedo", "[separable]") {
   Material material = gaussian_material(2, 4);
-  material.width_follows_albedo = true;
+  material.albedo_width = Profile::burley_cycles({1, 1, 1}).albedo_width();
   material.taps.radius_mm = 100;  // wide enough for any albedo
   MadeFrame made(41, 1, Camera::orthographic(4, 4), 0);
   made.albedo.assign(3 * 41, 0.8F);
@@ -198,7 +198,7 @@ TEST_CASE("the frame and the materials are checked", "[separable]") {
   CHECK(code(made, {}) == static_cast<int>(ErrorCode::usage));
   CHECK(code(made, {tiny_material(1), tiny_material(2)}) == static_cast<int>(ErrorCode::usage));
   Material follows = tiny_material();
-  follows.width_follows_albedo = true;
+  follows.albedo_width = Profile::burley_cycles({1, 1, 1}).albedo_width();
   CHECK(code(made, {follows}) == static_cast<int>(ErrorCode::role_missing));
   made.camera.projection = Camera::Projection::perspective;
   CHECK(code(made, {tiny_material()}) == static_cast<int>(ErrorCode::role_missing));

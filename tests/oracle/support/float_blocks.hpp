@@ -44,7 +44,7 @@ class FloatBlocks {
         sheared_(axis == 1 && is_sheared(made, options)) {
     columns_ = (made.width + 15) / 16;
     bool may_be_flat = made.mask.empty() && options.jitter == 0;
-    for (const auto& material : materials) may_be_flat = may_be_flat && !material.width_follows_albedo;
+    for (const auto& material : materials) may_be_flat = may_be_flat && !material.albedo_width;
     for (int y = 0; y < made.height; y += 16) {
       for (int x = 0; x < made.width; x += 16) blocks.push_back(block_at(x, y, may_be_flat));
     }

@@ -71,6 +71,13 @@ class FloatSurface {
   std::vector<FloatPixel> pixels;
 
  private:
+  template <std::size_t count>
+  static float polynomial(const std::array<double, count>& coefficients, float a) {
+    float sum = 0;
+    for (std::size_t i = count; i-- > 0;) sum = static_cast<float>(coefficients[i]) + a * sum;
+    return sum;
+  }
+
   float albedo(std::size_t i) const { return made_.albedo.empty() ? 1 : made_.albedo[i]; }
   bool raw() const { return options_.lighting == dermis::Lighting::raw; }
   bool perspective() const { return made_.camera.projection == dermis::Camera::Projection::perspective; }
@@ -114,9 +121,10 @@ class FloatSurface {
     pixel.slant = z * style_.multiply_add(pixel.ray[0], pixel.ray[0], squared);
     for (std::size_t c = 0; c < 3; ++c) {
       pixel.k[c] = made_.mask.empty() ? 1 : std::fmin(made_.mask[i], 1.0F);
-      if (material.width_follows_albedo) {
+      if (material.albedo_width) {
         const float a = std::fmin(std::fmax(albedo(3 * i + c), 0.0F), 1.0F);
-        pixel.k[c] /= 1.9F - a + 3.5F * (a - 0.8F) * (a - 0.8F);
+        pixel.k[c] *=
+            polynomial(material.albedo_width->numerator, a) / polynomial(material.albedo_width->denominator, a);
       }
       pixel.spread = std::fmax(pixel.spread, pixel.k[c] * material.taps.relative_width[c]);
     }
