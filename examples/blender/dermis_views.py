@@ -3,17 +3,19 @@
     blender -b shot.blend --python examples/blender/dermis_views.py -- --frame 12 -o shot
 
 renders shot.exr, as the scene's camera sees it, and shot_behind.exr, from the other side, with the passes that dermis
-reads. Run with Blender 3.4 and Cycles; what 2.93 names otherwise is heeded. Afterwards, with a scene unit of 10 mm:
+reads. With profiles for its materials, by name or pass index, it runs dermis on them as well, which writes shot_sss.exr:
 
-    dermis filter shot.exr -o shot_sss.exr --view shot_behind.exr --mm-per-unit 10 --material 1=skin-walk
+    blender -b shot.blend --python examples/blender/dermis_views.py -- -o shot --material Skin=skin-walk
 
-Materials that scatter are those with a pass index above 0; nothing else is seen by the added cameras, so that no floor
+Run with Blender 3.4 and Cycles; what 2.93 names otherwise is heeded. A scene unit is as long as the scene says, or as
+--mm-per-unit does. Materials that scatter are those with a pass index above 0; nothing else is seen by the added cameras, so that no floor
 or wall hides a surface. Subsurface scattering itself had better be off in the scene, as dermis adds it.
 """
 
 import argparse
 import math
 import os
+import subprocess
 import sys
 
 import bpy
@@ -120,6 +122,34 @@ def render_views(scene, arguments):
         bpy.data.cameras.remove(data)
 
 
+def pass_index(name):
+    """The pass index of a material of that name, or the index that the name is."""
+    material = bpy.data.materials.get(name)
+    if material is None and name.isdigit():
+        return int(name)
+    if material is None or material.pass_index == 0:
+        sys.exit(f"dermis_views: --material: got {name}, want a material with a pass index above 0, or that index")
+    return material.pass_index
+
+
+def filter_picture(scene, views, arguments, materials):
+    """Runs dermis on the picture and its views; ends with its exit code if that is not 0."""
+    mm_per_unit = arguments.mm_per_unit or 1000 * scene.unit_settings.scale_length
+    command = [arguments.dermis, "filter", arguments.output + ".exr", "-o", arguments.output + "_sss.exr"]
+    for view in views:
+        command += ["--view", view]
+    command += ["--mm-per-unit", f"{mm_per_unit:g}"]
+    for index, profile in materials:
+        command += ["--material", f"{index}={profile}"]
+    print("dermis_views:", " ".join(command))
+    try:
+        code = subprocess.run(command).returncode
+    except OSError as error:
+        sys.exit(f"dermis_views: --dermis: got {error}, want the dermis program")
+    if code != 0:
+        sys.exit(code)
+
+
 def parse(argv):
     parser = argparse.ArgumentParser(prog="dermis_views", description=__doc__.splitlines()[0])
     parser.add_argument("-o", "--output", required=True, help="names begin with this: OUTPUT.exr, OUTPUT_behind.exr")
@@ -129,12 +159,18 @@ def parse(argv):
     parser.add_argument("--samples", type=int, default=16, help="of each pixel of the views")
     parser.add_argument("--frame", type=int, help="of the timeline; else the current one")
     parser.add_argument("--views-only", action="store_true", help="do not render the picture itself")
+    parser.add_argument("--material", action="append", default=[], metavar="NAME=PROFILE",
+                        help="run dermis with this profile for a material, by its name or pass index; repeatable")
+    parser.add_argument("--mm-per-unit", type=float, help="else by the units of the scene")
+    parser.add_argument("--dermis", default="dermis", help="the program, if it is not where the system looks")
     return parser.parse_known_args(argv)[0]
 
 
 def main():
     arguments = parse(sys.argv[sys.argv.index("--") + 1:] if "--" in sys.argv else [])
     scene = bpy.context.scene
+    materials = [(pass_index(name), profile) for name, _, profile in
+                 (text.partition("=") for text in arguments.material)]
     if arguments.frame is not None:
         scene.frame_set(arguments.frame)
     settings = scene.render.image_settings
@@ -144,8 +180,11 @@ def main():
     if not arguments.views_only:
         render(scene, os.path.abspath(arguments.output + ".exr"))
     views = render_views(scene, arguments)
-    print("dermis filter", arguments.output + ".exr", "-o", arguments.output + "_sss.exr",
-          " ".join("--view " + view for view in views), "--mm-per-unit MM --material ID=PROFILE")
+    if materials:
+        filter_picture(scene, views, arguments, materials)
+    else:
+        print("dermis filter", arguments.output + ".exr", "-o", arguments.output + "_sss.exr",
+              " ".join("--view " + view for view in views), "--mm-per-unit MM --material ID=PROFILE")
 
 
 main()

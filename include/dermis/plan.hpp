@@ -11,6 +11,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "dermis/device.hpp"
@@ -109,6 +110,10 @@ struct Options {
   /// light times that gain, by the mean free path of each pixel over its radius of curvature. Counts only for random
   /// walks, whose mean free path is known, in frames with depth and normals. METHODS.md, "Curvature".
   bool curvature = true;
+  /// The scattered light of a pixel is the sum of weights times light, and is not divided by that of weights. Under a
+  /// light of 1 it is then the share of the profile's weight that lies on what the camera sees: 1 on a plane. Not for
+  /// frames with views.
+  bool sums_weights = false;
   BadPixels bad_pixels = BadPixels::keep;
   bool skip_uniform_light = true;  ///< tiles under uniform light are copied, which may differ in the last bit
   /// Pixels of a tile: a multiple of 16 across; 0 = what suits the device. The result does not depend on it.
@@ -240,6 +245,8 @@ class Event {
   /// Blocks until the work is done. Throws Error(device) if it failed.
   void wait() const;
   cl_event handle() const { return event_; }
+  /// Hands the OpenCL event over to the caller, who releases it.
+  cl_event release() { return std::exchange(event_, nullptr); }
 
  private:
   cl_event event_;

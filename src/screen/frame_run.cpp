@@ -46,7 +46,7 @@ params::RunFlags run_flags(const Plan::State& plan, const Frame& frame, const Bo
       (writes_result && !images.in_place(ImageName::result, ImageName::beauty)) ||
       options.bad_pixels == BadPixels::zero;
   bool defers = !plan.method->by_tiles() || options.bad_pixels == BadPixels::error || has_reuse ||
-                !frame.views.empty() || plan.settings.sums_weights || plan.settings.has_curvature();
+                !frame.views.empty() || plan.settings.options.sums_weights || plan.settings.has_curvature();
   for (const ImageName input :
        {ImageName::light, ImageName::albedo, ImageName::depth, ImageName::mask, ImageName::matte}) {
     defers = defers || images.output_over(input);
@@ -56,7 +56,7 @@ params::RunFlags run_flags(const Plan::State& plan, const Frame& frame, const Bo
   flags.writes_result = writes_result ? 1 : 0;
   flags.zeroes_bad = options.bad_pixels == BadPixels::zero ? 1 : 0;
   flags.copies = copies ? 1 : 0;
-  flags.skips = options.skip_uniform_light ? 1 : 0;
+  flags.skips = options.skip_uniform_light && !options.sums_weights ? 1 : 0;
   flags.defers = defers ? 1 : 0;
   flags.reuses = follows ? 1 : 0;
   return flags;

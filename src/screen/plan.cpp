@@ -63,6 +63,12 @@ void check_albedo_mix(const FrameDescription& frames, const Options& options) {
   }
 }
 
+void check_sums(const FrameDescription& frames, const Options& options) {
+  if (options.sums_weights && frames.views) {
+    throw Error(ErrorCode::usage, "sums_weights", "it with views", "one of the two");
+  }
+}
+
 /// Checks all that a plan is made of, and chooses its taps.
 PlanSettings settings_of(const Device& device, std::vector<Material> materials, const FrameDescription& frames,
                          const Options& options) {
@@ -71,6 +77,7 @@ PlanSettings settings_of(const Device& device, std::vector<Material> materials, 
   check_albedo_mix(frames, options);
   check_designs(materials, options);
   check_disc(options.disc);
+  check_sums(frames, options);
   ChosenTaps choice = choose_taps(std::move(materials), options);
   return {device, std::move(choice.materials), frames, std::move(choice.options)};
 }

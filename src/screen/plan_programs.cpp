@@ -15,7 +15,7 @@ std::string common_options(const PlanSettings& settings) {
          image_constants(settings.frames) + build_constant("PIXEL_WIDTH", settings.has_pixel_width() ? 1 : 0) +
          build_constant("JITTER", settings.options.jitter > 0 ? 1 : 0) +
          build_constant("SHEARED", settings.is_sheared() ? 1 : 0) +
-         build_constant("SUMS_WEIGHTS", settings.sums_weights ? 1 : 0) + bounds.str();
+         build_constant("SUMS_WEIGHTS", settings.options.sums_weights ? 1 : 0) + bounds.str();
 }
 
 PlanPrograms plan_programs(const PlanSettings& settings, const ScatterMethod& method, int terms) {

@@ -12,7 +12,7 @@ bool PlanSettings::has_pixel_width() const { return frames.mask || any_follows_a
 bool PlanSettings::is_sheared() const { return frames.depth && options.sheared && options.jitter == 0; }
 
 bool PlanSettings::has_curvature() const {
-  return options.curvature && frames.depth && frames.normal && !sums_weights &&
+  return options.curvature && frames.depth && frames.normal && !options.sums_weights &&
          std::any_of(materials.begin(), materials.end(),
                      [](const Material& its) { return dermis::has_curvature(its.profile); });
 }

@@ -12,8 +12,6 @@ struct PlanSettings {
   std::vector<Material> materials;
   FrameDescription frames;
   Options options;
-  /// The light after scattering is the sum of weights times light, and not divided by that of weights.
-  bool sums_weights = false;
 
   /// Whether a mask or an albedo scales the profile of each pixel.
   bool has_pixel_width() const;

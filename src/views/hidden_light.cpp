@@ -79,8 +79,7 @@ PlanSettings weights_of(const PlanSettings& settings) {
   result.options.albedo_mix = 0;
   result.options.jitter = 0;
   result.options.bad_pixels = BadPixels::keep;
-  result.options.skip_uniform_light = false;
-  result.sums_weights = true;
+  result.options.sums_weights = true;
   return result;
 }
 

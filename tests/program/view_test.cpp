@@ -1,4 +1,6 @@
 // dermis filter --view: light that enters where the camera does not look.
+#include <OpenImageIO/imagebuf.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -247,4 +249,68 @@ TEST_CASE("a random walk gains by the curvature that normals tell, and the progr
   CHECK(has(without.input, "curvature: none, as there are no normals"));
   CHECK(ball.off("without.exr", "off.exr") == 0);
   CHECK_FALSE(has(filter("burley.exr", "burley:9/6/4,cycles", {}).input, "curvature"));
+}
+
+TEST_CASE("--view-report draws which pixels get light and from which view") {
+  const Ball ball;
+  const std::string png = ball.folder / "views.png";
+  const Words views = {"--view", ball.back, "--view", ball.scene.path, "--view-factor", "none"};
+  Words with_report = views;
+  with_report.insert(with_report.end(), {"--view-report", png});
+  const Outcome outcome = ball.filter("with.exr", with_report);
+  INFO(outcome.errors << outcome.output);
+  CHECK(outcome.exit_code == 0);
+  CHECK(ball.filter("plain.exr", views).exit_code == 0);
+  CHECK(is_identical(ball.folder / "with.exr", ball.folder / "plain.exr"));
+  // The first view brings light to the rim, the second shows what the camera sees as well and brings none.
+  const auto count_of = [&](const std::string& colour) {
+    const std::size_t at = outcome.output.find("\n  " + colour + " ");
+    REQUIRE(at != std::string::npos);
+    return std::stoi(outcome.output.substr(at + 3 + colour.size()));
+  };
+  const int counted = count_of("orange");
+  CHECK(counted > 50);
+  CHECK(count_of("blue") == 0);
+  OIIO::ImageBuf image(png);
+  REQUIRE(image.read());
+  int orange = 0;
+  for (int y = 0; y < image.spec().height; ++y) {
+    for (int x = 0; x < image.spec().width; ++x) {
+      std::array<float, 3> rgb{};
+      image.getpixel(x, y, rgb.data(), 3);
+      CHECK(rgb[2] <= std::max(rgb[0], rgb[1]));
+      if (rgb[0] > rgb[2]) ++orange;
+    }
+  }
+  CHECK(orange >= counted);
+  ball.check_refuses({"--view-report", png}, 2,
+                     {"--view-report: got " + png + " without --view", "a view to report on"});
+}
+
+TEST_CASE("info --views tells how much the camera does not see") {
+  const Ball ball;
+  const auto info = [&](Words more) {
+    more.insert(more.begin(), {"info", ball.scene.path, "--views", "--json"});
+    more.insert(more.end(), ball.scene.camera.begin(), ball.scene.camera.end());
+    return run_program(more);
+  };
+  const auto share = [&](const std::string& profile) {
+    const Outcome outcome = info({"--material", "1=" + profile});
+    INFO(outcome.errors);
+    REQUIRE(outcome.exit_code == 0);
+    for (const nlohmann::json& its : nlohmann::json::parse(outcome.output)["materials"]) {
+      if (its["id"] != 1) continue;
+      CHECK(its["unseen"]["pixels_missing"].get<double>() <= 1);
+      return its["unseen"]["mean_share"].get<double>();
+    }
+    return -1.0;
+  };
+  // The wider the profile, the more of it lies beyond the rim.
+  const double narrow = share("burley:0.2/0.2/0.2");
+  const double wide = share("burley:2/2/2");
+  CHECK(narrow >= 0);
+  CHECK(narrow < 0.1);
+  CHECK(wide > 2 * narrow);
+  CHECK(wide < 1);
+  check_refused(info({}), 2, {"--views: got it without --material and --profile"});
 }

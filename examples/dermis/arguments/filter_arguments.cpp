@@ -112,6 +112,11 @@ void add_scatter_arguments(CLI::App& app, FilterArguments& arguments) {
   {
     const HelpGroup group(app, "Light from behind");
     add_view_arguments(app, arguments.surface);
+    app.add_option("--view-report", arguments.output.files.view_report,
+                   "also draw where the views bring light, each in a colour, over the scattered light in grey, and "
+                   "print what the colours mean; it takes a run for each view")
+        ->check(folder_or_file_ending({".png"}))
+        ->type_name("FILE.png");
   }
   {
     const HelpGroup group(app, "Translucency");

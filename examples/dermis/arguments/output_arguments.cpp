@@ -27,11 +27,15 @@ struct Output {
 constexpr Output outputs[] = {{"--output", &OutputFiles::output, ".exr"},
                               {"--preview", &OutputFiles::preview, ".png"},
                               {"--tile-map", &OutputFiles::tile_map, ".png"},
+                              {"--view-report", &OutputFiles::view_report, ".png"},
                               {"--stats-json", &OutputFiles::stats_json, ".json"}};
 
 void check_standard_output(const OutputArguments& arguments) {
   if (arguments.files.stats_json != "-") return;
-  const char* other = arguments.stats ? "--stats" : !arguments.files.tile_map.empty() ? "--tile-map" : nullptr;
+  const char* other = arguments.stats                        ? "--stats"
+                      : !arguments.files.tile_map.empty()    ? "--tile-map"
+                      : !arguments.files.view_report.empty() ? "--view-report"
+                                                             : nullptr;
   if (other != nullptr)
     throw Error(ErrorCode::usage, "--stats-json", fmt::format("- together with {}", other),
                 "only one of them on standard output");

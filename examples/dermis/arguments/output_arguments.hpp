@@ -12,6 +12,7 @@ struct OutputFiles {
   std::string output;
   std::string preview;
   std::string tile_map;
+  std::string view_report;
   std::string stats_json;  ///< "-" is standard output
 };
 

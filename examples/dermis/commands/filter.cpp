@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdio>
+#include <deque>
 #include <memory>
 #include <optional>
 #include <string>
@@ -34,6 +35,7 @@
 #include "report/stats_report.hpp"
 #include "report/stopwatch.hpp"
 #include "report/tile_map.hpp"
+#include "report/view_report.hpp"
 
 namespace dermis::program {
 namespace {
@@ -196,13 +198,14 @@ struct ViewResult {
   Outcome outcome;
   ResultChannels channels;
   StatsReport report;
-  std::vector<float> light;  ///< RGB, for a map of tiles
+  std::vector<float> light;                ///< RGB, for a map of tiles
+  std::optional<ViewReport> views_report;  ///< if it is asked for
 };
 
 /// A view in which nothing scatters: its light is the scattered light, too.
 ViewResult copy_view(const FilterJob& job, SurfaceInput& input, FilterSession& session, const StepTimes& times,
                      Messages& messages) {
-  ViewResult result{Outcome::copied, result_channels(job.layers, input, messages), {}, {}};
+  ViewResult result{Outcome::copied, result_channels(job.layers, input, messages), {}, {}, {}};
   check_compression(job.compression, input.picture, input.roles, result.channels.written);
   input.picture.add_channels(result.channels.scattered, Format::f32);
   input.picture.store(result.channels.scattered,
@@ -278,6 +281,8 @@ ViewResult filter_view(const FilterJob& job, const PictureFiles& files, SurfaceI
   warn_of_bad_pixels(stats, job.options.bad_pixels, messages);
   report_views(input.loaded_views, stats, messages);
   times.run_ms = step.lap_ms();
+  std::optional<ViewReport> views_report;
+  if (!files.outputs.view_report.empty()) views_report = measure_views(*plan, frame);
 
   if (has_beauty) finish_beauty(job, compose, parts, channels, input, beauty, messages);
   return {Outcome::filtered,
@@ -294,7 +299,8 @@ ViewResult filter_view(const FilterJob& job, const PictureFiles& files, SurfaceI
            .input = {},
            .notes = {},
            .warnings = {}},
-          files.outputs.tile_map.empty() ? std::vector<float>() : std::move(input.loaded.light)};
+          files.outputs.tile_map.empty() ? std::vector<float>() : std::move(input.loaded.light),
+          std::move(views_report)};
 }
 
 /// The channels to write of all views; none stands for all that there are.
@@ -315,24 +321,27 @@ void write_pictures(const FilterJob& job, const OutputFiles& files, const std::v
   picture.set_attribute(config_attribute, job.settings);
   picture.set_attribute(scattered_attribute, fmt::format("{}", fmt::join(passes, ", ")));
   const ViewResult& shown = results.front();
-  std::optional<TemporaryFile> preview;
-  if (!files.preview.empty()) {
-    preview.emplace(files.preview, "--preview");
-    write_srgb_png(*preview, picture.width(), picture.height(), exr::load(picture, shown.report.roles, Role::beauty));
-  }
-  std::optional<TemporaryFile> tile_map;
-  if (!files.tile_map.empty()) {
-    tile_map.emplace(files.tile_map, "--tile-map");
-    write_tile_map_png(*tile_map, picture.width(), picture.height(), shown.report.stats.tiles, shown.light);
-  }
+  const int width = picture.width();
+  const int height = picture.height();
+  std::deque<TemporaryFile> drawn;
+  if (!files.preview.empty())
+    write_srgb_png(drawn.emplace_back(files.preview, "--preview"), width, height,
+                   exr::load(picture, shown.report.roles, Role::beauty));
+  if (!files.tile_map.empty())
+    write_tile_map_png(drawn.emplace_back(files.tile_map, "--tile-map"), width, height, shown.report.stats.tiles,
+                       shown.light);
+  if (shown.views_report)
+    write_view_report_png(drawn.emplace_back(files.view_report, "--view-report"), width, height, *shown.views_report);
   picture.write(files.output, job.compression, written_channels(results));
-  if (preview) preview->commit();
-  if (tile_map) tile_map->commit();
+  for (TemporaryFile& file : drawn) file.commit();
 }
 
-/// A preview and a map of tiles are of one view.
+/// What is drawn is of one view.
 void check_views(const std::vector<std::string>& views, const OutputFiles& files) {
-  const std::string argument = !files.preview.empty() ? "--preview" : !files.tile_map.empty() ? "--tile-map" : "";
+  const std::string argument = !files.preview.empty()       ? "--preview"
+                               : !files.tile_map.empty()    ? "--tile-map"
+                               : !files.view_report.empty() ? "--view-report"
+                                                            : "";
   if (views.size() > 1 && !argument.empty())
     throw Error(ErrorCode::usage, argument, fmt::format("it for the views {}", fmt::join(views, ", ")),
                 "--eye with one of them");
@@ -362,6 +371,7 @@ Outcome filter_picture(const FilterJob& job, const PictureFiles& files, FilterSe
     result.report.notes = messages.notes();
     result.report.warnings = messages.warnings();
     if (!files.outputs.tile_map.empty()) fmt::print("{}", legend_of(result.report.stats.tiles));
+    if (result.views_report) fmt::print("{}", legend_of(*result.views_report, result.report.views));
     if (job.stats) fmt::print("{}", text_of(result.report));
     reports.push_back(std::move(result.report));
   }

@@ -146,6 +146,9 @@ FilterJob job_of(const FilterArguments& arguments) {
   check_quality(arguments);
   const Options options = options_of(arguments);
   check_tile_map(arguments);
+  if (!arguments.output.files.view_report.empty() && arguments.surface.views.empty())
+    throw Error(ErrorCode::usage, "--view-report", arguments.output.files.view_report + " without --view",
+                "a view to report on");
   if (arguments.reuse && arguments.output.inputs.size() == 1)
     throw Error(ErrorCode::usage, "--reuse", "one picture", "several, of a sequence");
   SurfaceRequest surface = request_of(arguments.surface);

@@ -16,6 +16,7 @@
 #include "arguments/quality_arguments.hpp"
 #include "commands/commands.hpp"
 #include "commands/input_report.hpp"
+#include "commands/unseen_weight.hpp"
 #include "dermis/error.hpp"
 #include "dermis/exr.hpp"
 #include "dermis/plan.hpp"
@@ -37,6 +38,7 @@ struct InfoArguments {
   PictureArguments picture;
   MaterialArguments materials;
   std::optional<std::string> cache_dir;  ///< as cache_folder_of takes it
+  bool views = false;                    ///< whether the camera sees what the profiles reach
   bool json = false;
 };
 
@@ -51,7 +53,8 @@ struct Surface {
   std::optional<int> id;            ///< none: every pixel
   std::optional<std::string> name;  ///< in a Cryptomatte
   SurfacePixels pixels;
-  std::optional<Reach> reach;  ///< if a profile was given for it
+  std::optional<Reach> reach;          ///< if a profile was given for it
+  std::optional<UnseenWeight> unseen;  ///< if it was asked for
 };
 
 struct Memory {
@@ -103,18 +106,35 @@ void find_surfaces(Info& info, const std::vector<NamedProfile>& profiles, const 
       counts.by_id[*named.id];
       continue;
     }
-    Surface all{{}, {}, count_surface(depth, exr::load(info.picture, info.roles, Role::mask)), {}};
+    Surface all{{}, {}, count_surface(depth, exr::load(info.picture, info.roles, Role::mask)), {}, {}};
     all.reach = reach_of(named, all.pixels, info, mm_per_unit);
     info.surfaces.push_back(all);
   }
   for (const auto& [id, pixels] : counts.by_id) {
-    Surface surface{id, {}, pixels, {}};
+    Surface surface{id, {}, pixels, {}, {}};
     for (const NamedProfile& named : profiles) {
       if (named.id != id) continue;
       surface.name = named.name;
       surface.reach = reach_of(named, pixels, info, mm_per_unit);
     }
     info.surfaces.push_back(surface);
+  }
+}
+
+/// Throws Error(usage or role_missing) if the arguments or the picture do not tell it.
+void find_unseen(Info& info, const InfoArguments& arguments, const std::vector<NamedProfile>& profiles) {
+  if (profiles.empty())
+    throw Error(ErrorCode::usage, "--views", "it without --material and --profile", "profiles that scatter");
+  if (!arguments.picture.mm_per_unit)
+    throw Error(ErrorCode::usage, "--mm-per-unit", "nothing", "millimetres per scene unit, for --views");
+  if (!info.camera) throw Error(ErrorCode::role_missing, "--views", info.camera_problem, "a camera");
+  const std::vector<UnseenWeight> all =
+      find_unseen_weights(info.picture, info.roles, *info.camera, profiles, *arguments.picture.mm_per_unit,
+                          folder_of(info.path), cache_folder_of(arguments.cache_dir));
+  for (std::size_t i = 0; i < profiles.size(); ++i) {
+    for (Surface& surface : info.surfaces) {
+      if (surface.id == profiles[i].id) surface.unseen = all[i];
+    }
   }
 }
 
@@ -201,6 +221,8 @@ json json_of(const Surface& surface) {
   object["profile"] = surface.reach->profile;
   object["radius_mm"] = surface.reach->radius_mm;
   object["radius_px"] = surface.reach->radius_px ? json(*surface.reach->radius_px) : json(nullptr);
+  if (const auto& unseen = surface.unseen)
+    object["unseen"] = {{"mean_share", unseen->mean_share}, {"pixels_missing", unseen->pixels_missing}};
   return object;
 }
 
@@ -247,6 +269,11 @@ std::string text_of(const Surface& surface) {
     text += fmt::format(", {}: radius {:.3g} mm", surface.reach->profile, surface.reach->radius_mm);
     if (const auto& px = surface.reach->radius_px) text += fmt::format(", {:.3g} x {:.3g} px", (*px)[0], (*px)[1]);
   }
+  if (const auto& unseen = surface.unseen)
+    text += fmt::format(
+        "\n           {:.2g} % of its weight at least lies where the camera does not look, more than 10 % "
+        "at {:.2g} % of the pixels",
+        100 * unseen->mean_share, 100 * unseen->pixels_missing);
   return text + "\n";
 }
 
@@ -296,6 +323,7 @@ int run_info(const InfoArguments& arguments) {
   messages.begin(arguments.path);
   warn_of_input(info.roles, info.camera.value_or(exr::FoundCamera{}), messages);
   find_surfaces(info, profiles, arguments.picture.mm_per_unit);
+  if (arguments.views) find_unseen(info, arguments, profiles);
   info.memory = find_memory(info, profiles, arguments.picture.mm_per_unit, cache_folder_of(arguments.cache_dir));
   fmt::print("{}", arguments.json ? json_text_of(info) : text_of(info));
   return 0;
@@ -313,6 +341,10 @@ Command add_info(CLI::App& parent) {
   add_camera_arguments(*app, arguments->picture.camera);
   add_material_arguments(*app, arguments->materials);
   add_cache_argument(*app, arguments->cache_dir);
+  app->add_flag(
+      "--views", arguments->views,
+      "also how much of what each profile reaches lies where the camera does not look, as far as depth tells: "
+      "whether --view of the filter is worth it");
   app->add_flag("--json", arguments->json, "as JSON");
   return {app, [arguments] { return run_info(*arguments); }};
 }

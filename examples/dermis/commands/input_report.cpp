@@ -42,7 +42,7 @@ void check_direct_light(const exr::Roles& roles, Messages& messages) {
   if (first->names.front() == roles.missing_light.front())
     messages.warn(ErrorCode::role_missing, "light",
                   fmt::format("no pass {} beside {}, which alone scatters; want it, or --role light=CHANNELS",
-                              first->names.front(), text_of(roles[Role::light])));
+                              first->names.front(), program::text_of(roles[Role::light])));
 }
 
 std::string text_of_roles(const SurfaceInput& input) {
@@ -53,7 +53,7 @@ std::string text_of_roles(const SurfaceInput& input) {
     if (!roles.has(role)) continue;
     if (role == Role::material && input.loaded.material.empty()) continue;
     if ((role == Role::material || role == Role::matte) && !input.loaded.cryptomatte.empty()) continue;
-    text += fmt::format("{}{} {} ({}{})", text.empty() ? "" : "; ", exr::name_of(role), text_of(roles[role]),
+    text += fmt::format("{}{} {} ({}{})", text.empty() ? "" : "; ", exr::name_of(role), program::text_of(roles[role]),
                         roles.rules[static_cast<std::size_t>(role)], role == Role::light ? text_of_light(input) : "");
   }
   if (!input.loaded.cryptomatte.empty()) text += fmt::format("; materials {}", input.loaded.cryptomatte);
