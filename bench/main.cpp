@@ -142,8 +142,8 @@ void measure(const Arguments& arguments) {
   }
   measurement.against = arguments.against;
   fmt::print("{}", bench::table_of(measurement));
-  if (!arguments.json.empty()) program::write_text("--json", arguments.json, bench::json_of(measurement));
-  if (!arguments.csv.empty()) program::write_text("--csv", arguments.csv, bench::csv_of(measurement));
+  if (!arguments.json.empty()) program::write_file("--json", arguments.json, bench::json_of(measurement));
+  if (!arguments.csv.empty()) program::write_file("--csv", arguments.csv, bench::csv_of(measurement));
   if (!arguments.plot.empty()) bench::draw_plots(arguments.plot, measurement);
 }
 
@@ -155,7 +155,7 @@ void run(const Arguments& arguments) {
   if (arguments.answers) return answer(arguments);
   if (!arguments.walk_table.empty()) {
     program::check_writable("--walk-table", arguments.walk_table);
-    return program::write_text("--walk-table", arguments.walk_table, bench::make_walk_table());
+    return program::write_file("--walk-table", arguments.walk_table, bench::make_walk_table());
   }
   if (!arguments.against.empty() && (arguments.stress || !arguments.paper.empty())) {
     throw Error(ErrorCode::usage, "--against", arguments.stress ? "--stress" : "--paper", "cases that have times");

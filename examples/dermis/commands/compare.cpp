@@ -92,9 +92,7 @@ class HeatMap {
     for (const float value : values_)
       if (std::isfinite(value)) largest = std::max(largest, value);
     for (float& value : values_) value = !std::isfinite(value) ? 1.0F : largest > 0 ? value / largest : 0.0F;
-    TemporaryFile temporary(path, "--heatmap");
-    write_heatmap_png(temporary, width_, height_, values_);
-    temporary.commit();
+    write_file("--heatmap", path, heatmap_png(width_, height_, values_));
     fmt::print("heat map: brightest = {:.4g}\n", largest);
   }
 

@@ -318,12 +318,12 @@ void write_pictures(const FilterJob& job, const OutputFiles& files, const std::v
   std::optional<TemporaryFile> preview;
   if (!files.preview.empty()) {
     preview.emplace(files.preview, "--preview");
-    write_srgb_png(*preview, picture.width(), picture.height(), exr::load(picture, shown.report.roles, Role::beauty));
+    preview->write(srgb_png(picture.width(), picture.height(), exr::load(picture, shown.report.roles, Role::beauty)));
   }
   std::optional<TemporaryFile> tile_map;
   if (!files.tile_map.empty()) {
     tile_map.emplace(files.tile_map, "--tile-map");
-    write_tile_map_png(*tile_map, picture.width(), picture.height(), shown.report.stats.tiles, shown.light);
+    tile_map->write(tile_map_png(picture.width(), picture.height(), shown.report.stats.tiles, shown.light));
   }
   picture.write(files.output, job.compression, written_channels(results));
   if (preview) preview->commit();

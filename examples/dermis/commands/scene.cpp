@@ -98,7 +98,7 @@ void write_light(const SceneArguments& arguments, const oracle::SceneLight& ligh
   map.write(arguments.shadow_map, "zip");
   const std::filesystem::path folder = std::filesystem::absolute(arguments.lights).parent_path();
   const auto name = std::filesystem::absolute(arguments.shadow_map).lexically_proximate(folder);
-  write_text("--lights", arguments.lights, lights_json(light.light, name.string()));
+  write_file("--lights", arguments.lights, lights_json(light.light, name.string()));
 }
 
 int run_scene(const SceneArguments& arguments) {

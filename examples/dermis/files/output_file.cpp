@@ -36,9 +36,9 @@ void check_outputs(std::vector<NamedFile> taken, const std::vector<NamedFile>& o
   }
 }
 
-void write_text(std::string_view argument, const fs::path& path, std::string_view text) {
+void write_file(std::string_view argument, const fs::path& path, std::string_view bytes) {
   TemporaryFile file(path, argument);
-  std::fwrite(text.data(), 1, text.size(), file.stream());
+  file.write(bytes);
   file.commit();
 }
 
@@ -46,7 +46,7 @@ void write_text_or_print(std::string_view argument, const std::string& path, std
   if (path == "-")
     fmt::print("{}", text);
   else if (!path.empty())
-    write_text(argument, path, text);
+    write_file(argument, path, text);
 }
 
 }  // namespace dermis::program
