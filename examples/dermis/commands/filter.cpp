@@ -22,6 +22,7 @@
 #include "commands/surface_input.hpp"
 #include "dermis/error.hpp"
 #include "dermis/version.hpp"
+#include "exr/message_text.hpp"
 #include "files/beauty_composition.hpp"
 #include "files/lossy_channels.hpp"
 #include "files/other_passes.hpp"
@@ -31,6 +32,7 @@
 #include "files/view_factor.hpp"
 #include "report/messages.hpp"
 #include "report/progress_bar.hpp"
+#include "report/standard_output.hpp"
 #include "report/stats_report.hpp"
 #include "report/stopwatch.hpp"
 #include "report/tile_map.hpp"
@@ -361,8 +363,8 @@ Outcome filter_picture(const FilterJob& job, const PictureFiles& files, FilterSe
     result.report.input = messages.inputs();
     result.report.notes = messages.notes();
     result.report.warnings = messages.warnings();
-    if (!files.outputs.tile_map.empty()) fmt::print("{}", legend_of(result.report.stats.tiles));
-    if (job.stats) fmt::print("{}", text_of(result.report));
+    if (!files.outputs.tile_map.empty()) print(legend_of(result.report.stats.tiles));
+    if (job.stats) print(text_of(result.report));
     reports.push_back(std::move(result.report));
   }
   if (!files.outputs.stats_json.empty())
@@ -381,7 +383,7 @@ int filter_sequence(const FilterJob& job, FilterSession& session, Messages& mess
   int code = 0;
   for (std::size_t i = 0; i < count; ++i) {
     const auto& [input, outputs] = job.pictures[i];
-    if (job.stats || !outputs.tile_map.empty()) fmt::print("{}\n", outputs.output);
+    if (job.stats || !outputs.tile_map.empty()) print(exr::escaped(outputs.output) + "\n");
     messages.begin(input);
     try {
       if (filter_picture(job, job.pictures[i], session, messages) == Outcome::copied) ++copied;

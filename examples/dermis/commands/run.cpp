@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <array>
 #include <csignal>
-#include <cstdio>
 #include <cstdlib>
 #include <string>
 #include <string_view>
@@ -20,6 +19,7 @@
 #include "exr/temporary_file.hpp"
 #include "files/pocl_cache.hpp"
 #include "report/messages.hpp"
+#include "report/standard_output.hpp"
 
 namespace dermis::program {
 namespace {
@@ -30,9 +30,9 @@ int fail(ErrorCode code, std::string_view message) {
 }
 
 int finish(int code) {
-  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
-    return fail(ErrorCode::output, "standard output: got a write error, want all of it out");
-  return code;
+  const auto problem = output_problem();
+  if (!problem) return code;
+  return fail(ErrorCode::output, Error(ErrorCode::output, "standard output", *problem, "all of it out").what());
 }
 
 /// The word where a command should stand is not one. CLI11 would only say that a command is missing.
@@ -124,6 +124,7 @@ void handle_signals() {
     sigaction(number, &action, nullptr);
   }
   std::signal(SIGXFSZ, SIG_IGN);
+  std::signal(SIGPIPE, SIG_IGN);
 }
 
 int run(int argc, char** argv) {

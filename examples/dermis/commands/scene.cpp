@@ -20,6 +20,7 @@
 #include "dermis/oracle/scenes.hpp"
 #include "files/lights_file.hpp"
 #include "files/output_file.hpp"
+#include "report/standard_output.hpp"
 
 namespace dermis::program {
 namespace {
@@ -112,7 +113,8 @@ int run_scene(const SceneArguments& arguments) {
     write_light(arguments, oracle::scene_light(arguments.name, size->width, size->height, arguments.px_per_mm,
                                                projection, arguments.texels));
   picture_of(scene).write(arguments.output, "zip");
-  fmt::print("{}={:.17g}\nmm_per_unit=1\n", arguments.orthographic ? "px_per_unit" : "focal_px", scene.camera.scale_x);
+  print(fmt::format("{}={:.17g}\nmm_per_unit=1\n", arguments.orthographic ? "px_per_unit" : "focal_px",
+                    scene.camera.scale_x));
   return 0;
 }
 

@@ -6,6 +6,7 @@
 #include <system_error>
 
 #include "dermis/error.hpp"
+#include "report/standard_output.hpp"
 
 namespace dermis::program {
 
@@ -44,7 +45,7 @@ void write_file(std::string_view argument, const fs::path& path, std::string_vie
 
 void write_text_or_print(std::string_view argument, const std::string& path, std::string_view text) {
   if (path == "-")
-    fmt::print("{}", text);
+    print(text);
   else if (!path.empty())
     write_file(argument, path, text);
 }
