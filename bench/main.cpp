@@ -8,6 +8,7 @@
 
 #include "dermis/error.hpp"
 #include "files/output_file.hpp"
+#include "files/pocl_cache.hpp"
 #include "measure/measurement.hpp"
 #include "measure/other_build.hpp"
 #include "measure/registry.hpp"
@@ -222,6 +223,8 @@ int main(int argc, char** argv) {
   }
   int code = 0;
   try {
+    program::choose_cache();
+    if (const auto warning = program::cache_warning()) say("warning: " + *warning);
     run(arguments);
     if (const auto problem = program::output_problem())
       throw Error(ErrorCode::output, "standard output", *problem, "all of it out");
@@ -229,5 +232,6 @@ int main(int argc, char** argv) {
     say(std::string("error: ") + error.what());
     code = static_cast<int>(error.code());
   }
+  program::remove_temporary_cache();
   return code;
 }

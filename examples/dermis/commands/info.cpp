@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "arguments/cache_argument.hpp"
+#include "arguments/device_arguments.hpp"
 #include "arguments/material_arguments.hpp"
 #include "arguments/picture_arguments.hpp"
 #include "arguments/profile_argument.hpp"
@@ -182,7 +183,7 @@ std::optional<Memory> find_memory(const Info& info, const std::vector<NamedProfi
     const int width = info.picture.width();
     const int height = info.picture.height();
     const std::vector<Material> materials = materials_of(info, asked, mm_per_unit);
-    return Memory{Plan::scratch_bytes(Device::open(), materials, *frames, options, width, height),
+    return Memory{Plan::scratch_bytes(open_device({}), materials, *frames, options, width, height),
                   pixel_bytes * static_cast<std::size_t>(width) * static_cast<std::size_t>(height)};
   } catch (const Error&) {
     return std::nullopt;

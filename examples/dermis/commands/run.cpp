@@ -74,6 +74,7 @@ int parse_and_run(int argc, char** argv) {
   }
   const auto chosen =
       std::find_if(commands.begin(), commands.end(), [](const Command& command) { return command.app->parsed(); });
+  choose_cache();
   return finish(chosen->run());
 }
 
@@ -136,6 +137,7 @@ int run(int argc, char** argv) {
   is_running = true;
   const int code = parse_and_run_safely(argc, argv);
   is_running = false;
+  remove_temporary_cache();
   return code;
 }
 

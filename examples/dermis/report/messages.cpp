@@ -62,6 +62,8 @@ void Messages::progress(std::string_view text) const {
   if (!arguments_.quiet) print_line(text);
 }
 
+void print_warning(std::string_view text) { print_line(fmt::format("warning: {}", text)); }
+
 void print_error(std::string_view message) { print_line(fmt::format("error: {}", message)); }
 
 int report_exception(std::string_view file) {
