@@ -3,7 +3,7 @@
 
 # OpenImageIO's CMake package wants its tools to be there (openimageio-tools).
 build_packages=(g++ cmake ninja-build pkg-config pocl-opencl-icd ocl-icd-opencl-dev libopenimageio-dev openimageio-tools
-  libeigen3-dev libcli11-dev nlohmann-json3-dev libfmt-dev libfftw3-dev catch2 python3)
+  zlib1g-dev libeigen3-dev libcli11-dev nlohmann-json3-dev libfmt-dev libfftw3-dev catch2 python3)
 
 jobs=$(nproc)
 logs=$PWD/build/logs

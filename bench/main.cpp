@@ -3,10 +3,12 @@
 
 #include <CLI/CLI.hpp>
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
 
 #include "dermis/error.hpp"
 #include "files/output_file.hpp"
+#include "files/pocl_cache.hpp"
 #include "measure/measurement.hpp"
 #include "measure/other_build.hpp"
 #include "measure/registry.hpp"
@@ -15,6 +17,7 @@
 #include "report/plots.hpp"
 #include "report/progress_bar.hpp"
 #include "report/report.hpp"
+#include "report/standard_output.hpp"
 #include "report/stress_report.hpp"
 #include "walk/walk_table.hpp"
 
@@ -59,7 +62,8 @@ std::vector<bench::NamedMaterial> materials_of(const Arguments& arguments) {
   return materials;
 }
 
-void say(const std::string& text) { fmt::print(stderr, "dermis-bench: {}\n", text); }
+/// If nobody can be told, the work goes on.
+void say(const std::string& text) { std::fputs(fmt::format("dermis-bench: {}\n", text).c_str(), stderr); }
 
 bench::Setup setup_of(const Arguments& arguments) {
   bench::Setup setup{.device = arguments.device, .threads = arguments.threads, .min_ms = arguments.min_ms};
@@ -119,7 +123,7 @@ void measure(const Arguments& arguments) {
                                                    arguments.filter);
   if (is_against) cases = with_rounds(std::move(cases));
   if (arguments.list) {
-    for (const bench::Case& what : cases) fmt::print("{}\n", what.name());
+    for (const bench::Case& what : cases) program::print(what.name() + "\n");
     return;
   }
   if (!is_picture && arguments.all && arguments.filter.empty()) {
@@ -141,9 +145,9 @@ void measure(const Arguments& arguments) {
                                        [&](double share, const std::string& what) { progress.update(share, what); });
   }
   measurement.against = arguments.against;
-  fmt::print("{}", bench::table_of(measurement));
-  if (!arguments.json.empty()) program::write_text("--json", arguments.json, bench::json_of(measurement));
-  if (!arguments.csv.empty()) program::write_text("--csv", arguments.csv, bench::csv_of(measurement));
+  program::print(bench::table_of(measurement));
+  if (!arguments.json.empty()) program::write_file("--json", arguments.json, bench::json_of(measurement));
+  if (!arguments.csv.empty()) program::write_file("--csv", arguments.csv, bench::csv_of(measurement));
   if (!arguments.plot.empty()) bench::draw_plots(arguments.plot, measurement);
 }
 
@@ -155,7 +159,7 @@ void run(const Arguments& arguments) {
   if (arguments.answers) return answer(arguments);
   if (!arguments.walk_table.empty()) {
     program::check_writable("--walk-table", arguments.walk_table);
-    return program::write_text("--walk-table", arguments.walk_table, bench::make_walk_table());
+    return program::write_file("--walk-table", arguments.walk_table, bench::make_walk_table());
   }
   if (!arguments.against.empty() && (arguments.stress || !arguments.paper.empty())) {
     throw Error(ErrorCode::usage, "--against", arguments.stress ? "--stress" : "--paper", "cases that have times");
@@ -163,10 +167,10 @@ void run(const Arguments& arguments) {
   if (arguments.stress) {
     if (!arguments.plot.empty()) bench::prepare_plots(arguments.plot);
     const dermis::Device device = dermis::Device::open(arguments.device, arguments.threads);
-    fmt::print("{}", bench::stress_report(device, arguments.plot, say));
+    program::print(bench::stress_report(device, arguments.plot, say));
     return;
   }
-  if (!arguments.paper.empty()) fmt::print("{}", bench::reproduce_paper(arguments.paper, say));
+  if (!arguments.paper.empty()) program::print(bench::reproduce_paper(arguments.paper, say));
   if (arguments.paper.empty() || !arguments.picture.empty()) measure(arguments);
 }
 
@@ -217,11 +221,17 @@ int main(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : static_cast<int>(ErrorCode::usage);
   }
+  int code = 0;
   try {
+    program::choose_cache();
+    if (const auto warning = program::cache_warning()) say("warning: " + *warning);
     run(arguments);
+    if (const auto problem = program::output_problem())
+      throw Error(ErrorCode::output, "standard output", *problem, "all of it out");
   } catch (const Error& error) {
-    fmt::print(stderr, "dermis-bench: error: {}\n", error.what());
-    return static_cast<int>(error.code());
+    say(std::string("error: ") + error.what());
+    code = static_cast<int>(error.code());
   }
-  return 0;
+  program::remove_temporary_cache();
+  return code;
 }

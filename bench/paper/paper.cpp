@@ -59,10 +59,10 @@ std::string reproduce_paper(const std::filesystem::path& folder,
   }
 
   const std::string table = introduction + table_of(claims);
-  program::write_text("--paper", folder / "table.md", table);
+  program::write_file("--paper", folder / "table.md", table);
   const Json object = {
       {"version", DERMIS_VERSION}, {"width_px", width_px}, {"side_px", side_px}, {"claims", json_of(claims)}};
-  program::write_text("--paper", folder / "claims.json", object.dump(2) + "\n");
+  program::write_file("--paper", folder / "claims.json", object.dump(2) + "\n");
   return table;
 }
 

@@ -3,8 +3,6 @@
 #include <array>
 #include <bit>
 #include <cstdint>
-#include <fstream>
-#include <iterator>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -18,6 +16,7 @@
 #include "exr/channel_catalogue.hpp"
 #include "exr/message_text.hpp"
 #include "exr/names_like.hpp"
+#include "exr/text_file.hpp"
 
 namespace dermis::exr {
 namespace {
@@ -127,8 +126,11 @@ std::string manifest_of(const Picture& picture, const std::string& key, const st
   const auto file = picture.text_attribute(key + "/manif_file");
   // A header may name any file: it has to lie beside the picture.
   if (!file || std::filesystem::path(*file).is_absolute() || file->find("..") != std::string::npos) return {};
-  std::ifstream stream(folder / *file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
+  try {
+    return read_text("manifest", folder / *file, "the manifest of a Cryptomatte");
+  } catch (const Error&) {
+    return {};
+  }
 }
 
 /// The names of a manifest of Cycles whose quotes and backslashes stand there as they are: {"NAME":"01234567",...},
@@ -151,7 +153,8 @@ std::vector<std::string> unescaped_names(std::string_view manifest) {
 
 /// The names of a manifest, which is a JSON object of names and ids; none if it is anything else.
 std::vector<std::string> names_in(const std::string& manifest) {
-  const nlohmann::json object = nlohmann::json::parse(manifest, nullptr, false);
+  const auto is_flat = [](int level, nlohmann::json::parse_event_t, const nlohmann::json&) { return level < 2; };
+  const nlohmann::json object = nlohmann::json::parse(manifest, is_flat, false);
   if (object.is_discarded()) return unescaped_names(manifest);
   std::vector<std::string> names;
   if (!object.is_object()) return names;

@@ -7,6 +7,7 @@
 #include <system_error>
 
 #include "dermis/error.hpp"
+#include "exr/chunk_check.hpp"
 #include "exr/header_check.hpp"
 #include "exr/message_text.hpp"
 
@@ -16,8 +17,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::uint32_t magic_number = 20000630;
-constexpr std::uint32_t deep_flag = 0x800;
-constexpr std::uint32_t multi_part_flag = 0x1000;
 constexpr std::size_t most_attributes = 10000;
 constexpr std::uint64_t largest_header_bytes = std::uint64_t{64} << 20;  // Cryptomatte manifests take a few MB
 
@@ -40,8 +39,11 @@ class HeaderReader {
     std::string out(count, '\0');
     if (!stream_.read(out.data(), static_cast<std::streamsize>(count))) damaged(path_, "the file ends in it");
     left_ -= count;
+    position_ += count;
     return out;
   }
+
+  std::uint64_t position() const { return position_; }
 
   std::uint32_t u32() { return little_endian(bytes(4)); }
 
@@ -59,6 +61,7 @@ class HeaderReader {
   std::ifstream stream_;
   std::uint64_t file_bytes_ = 0;
   std::uint64_t left_ = 0;
+  std::uint64_t position_ = 0;
 };
 
 void check_flags(const fs::path& path, std::uint32_t flags) {
@@ -101,7 +104,8 @@ std::vector<Header> read_headers(const fs::path& path) {
     parts.push_back(std::move(part));
     if (parts.size() > static_cast<std::size_t>(max_channels)) damaged(path, "more than 1024 parts");
   }
-  check_headers(path, parts, reader.file_bytes());
+  const std::vector<ChunkGrid> grids = check_headers(path, parts, flags, reader.file_bytes());
+  check_chunks(path, grids, reader.position(), (flags & multi_part_flag) != 0);
   return parts;
 }
 

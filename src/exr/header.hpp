@@ -23,8 +23,8 @@ inline constexpr std::size_t max_name = 255;    // of an attribute, a type or a 
 
 using Header = std::vector<HeaderAttribute>;
 
-/// The attributes of each part of a flat file that is within the limits. Throws Error(input_missing) if it cannot be
-/// opened, Error(input_unsupported) otherwise.
+/// The attributes of each part of a flat file that is within the limits and has all of its pixels. Throws
+/// Error(input_missing) if it cannot be opened, Error(input_unsupported) otherwise.
 std::vector<Header> read_headers(const std::filesystem::path& path);
 
 }  // namespace dermis::exr

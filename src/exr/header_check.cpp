@@ -14,6 +14,7 @@ namespace dermis::exr {
 namespace {
 
 constexpr std::uint32_t largest_tile_px = 8192;
+constexpr std::uint32_t half_type = 1;              // of a channel
 constexpr std::uint64_t smallest_chunk_bytes = 16;  // its place in the table (8), its row (4), its size (4)
 
 struct TypeSize {
@@ -49,12 +50,18 @@ constexpr std::array<TypeSize, 24> fixed_sizes = {{{"box2f", 16},
                                                    {"v3i", 12}}};
 
 struct Box {
+  std::int64_t y;
   std::int64_t width;
   std::int64_t height;
 };
 
+struct ChannelSum {
+  std::size_t count = 0;
+  std::uint64_t pixel_bytes = 0;
+};
+
 struct PartSize {
-  std::uint64_t chunks;
+  ChunkGrid grid;
   std::size_t channels;
 };
 
@@ -66,17 +73,17 @@ void check_channel_count(const std::filesystem::path& path, std::size_t channels
 /// The facts of a header that decide how much memory a reader will ask for.
 class HeaderCheck {
  public:
-  HeaderCheck(const std::filesystem::path& path, const Header& attributes) : path_(path), attributes_(attributes) {}
+  HeaderCheck(const std::filesystem::path& path, const Header& attributes, std::uint32_t flags)
+      : path_(path), attributes_(attributes), flags_(flags) {}
 
-  /// The blocks of pixels that the part has, and its channels.
   PartSize run() const {
     if (const HeaderAttribute* type = find("type"); type != nullptr && type->value.starts_with("deep")) {
       refuse(path_, "a deep picture", "a flat one");
     }
     box("displayWindow");
-    const std::size_t channels = count_channels();
+    const ChannelSum channels = add_channels();
     check_pixel_aspect();
-    return {chunk_count(box("dataWindow")), channels};
+    return {grid_of(box("dataWindow"), channels.pixel_bytes), channels.count};
   }
 
  private:
@@ -101,7 +108,7 @@ class HeaderCheck {
       corner[i] = std::bit_cast<std::int32_t>(little_endian(value.substr(4 * i)));
       if (std::abs(corner[i]) > max_coordinate) damaged(path_, std::string(name) + " at " + std::to_string(corner[i]));
     }
-    const Box sides = {corner[2] - corner[0] + 1, corner[3] - corner[1] + 1};
+    const Box sides = {corner[1], corner[2] - corner[0] + 1, corner[3] - corner[1] + 1};
     if (std::min(sides.width, sides.height) < 1 || std::max(sides.width, sides.height) > max_side_px) {
       refuse(path_, std::string(name) + " of " + std::to_string(sides.width) + " x " + std::to_string(sides.height),
              "1 to " + std::to_string(max_side_px) + " pixels on a side");
@@ -110,20 +117,23 @@ class HeaderCheck {
   }
 
   /// A channel list is, for each channel: name, 0, type (4), flags (4), sampling in x (4) and y (4); then a 0.
-  std::size_t count_channels() const {
+  ChannelSum add_channels() const {
     std::string_view list = value_of("channels", "chlist", 1);
     std::set<std::string_view> names;
+    ChannelSum sum;
     while (!list.empty() && list[0] != '\0') {
       const std::size_t end = list.find('\0');
       if (end > max_name || list.size() < end + 17) damaged(path_, "channels");
       const std::string_view name = list.substr(0, end);
       if (!names.insert(name).second) damaged(path_, "channel " + escaped(name) + " twice");
       check_channel(name, list.substr(end + 1, 16));
+      sum.pixel_bytes += little_endian(list.substr(end + 1)) == half_type ? 2 : 4;
       list.remove_prefix(end + 17);
     }
     if (list.size() != 1) damaged(path_, "channels");
-    check_channel_count(path_, names.size());
-    return names.size();
+    sum.count = names.size();
+    check_channel_count(path_, sum.count);
+    return sum;
   }
 
   void check_pixel_aspect() const {
@@ -142,20 +152,65 @@ class HeaderCheck {
     }
   }
 
-  std::uint64_t chunk_count(Box data) const {
-    const auto width = static_cast<std::uint64_t>(data.width);
-    const auto height = static_cast<std::uint64_t>(data.height);
-    if (find("tiles") != nullptr) {
-      const std::string_view tiles = value_of("tiles", "tiledesc", 9);
-      const std::uint32_t x = little_endian(tiles);
-      const std::uint32_t y = little_endian(tiles.substr(4));
-      if (std::min(x, y) < 1 || std::max(x, y) > largest_tile_px) {
-        damaged(path_, "tiles of " + std::to_string(x) + " x " + std::to_string(y));
-      }
-      return ((width + x - 1) / x) * ((height + y - 1) / y);
+  /// In files of several parts each says itself what it is, in others the flags do.
+  bool has_tiles() const {
+    if ((flags_ & multi_part_flag) == 0) return (flags_ & tiled_flag) != 0;
+    return value_of("type", "string", 1) == "tiledimage";
+  }
+
+  ChunkGrid grid_of(const Box& data, std::uint64_t pixel_bytes) const {
+    const char compression = value_of("compression", "compression", 1)[0];
+    ChunkGrid grid{.width = static_cast<std::uint64_t>(data.width),
+                   .height = static_cast<std::uint64_t>(data.height),
+                   .first_row = data.y,
+                   .chunk_width = static_cast<std::uint64_t>(data.width),
+                   .chunk_height = rows_of_chunk(compression),
+                   .pixel_bytes = pixel_bytes,
+                   .compression = static_cast<std::uint8_t>(compression),
+                   .has_tiles = has_tiles(),
+                   .chunks_of_smaller_levels = 0};
+    if (!grid.has_tiles) return grid;
+    const std::string_view tiles = value_of("tiles", "tiledesc", 9);
+    grid.chunk_width = little_endian(tiles);
+    grid.chunk_height = little_endian(tiles.substr(4));
+    if (std::min(grid.chunk_width, grid.chunk_height) < 1 ||
+        std::max(grid.chunk_width, grid.chunk_height) > largest_tile_px) {
+      damaged(path_, "tiles of " + std::to_string(grid.chunk_width) + " x " + std::to_string(grid.chunk_height));
     }
-    const std::uint64_t rows = rows_of_chunk(value_of("compression", "compression", 1)[0]);
-    return (height + rows - 1) / rows;
+    grid.chunks_of_smaller_levels = count_smaller_levels(grid, static_cast<unsigned char>(tiles[8]));
+    return grid;
+  }
+
+  /// The low half of `mode` says how many levels there are (one, a mip map, or one of each width and height), the high
+  /// half whether sides are rounded up where they are halved.
+  std::uint64_t count_smaller_levels(const ChunkGrid& first, unsigned mode) const {
+    enum : unsigned { one_level, mip_map, rip_map };
+    const unsigned kind = mode & 0xF;
+    if (kind > rip_map || mode >> 4 > 1) damaged(path_, "levels of tiles");
+    if (kind == one_level) return 0;
+    const std::vector<std::uint64_t> widths = sides_of_levels(first.width, mode >> 4);
+    const std::vector<std::uint64_t> heights = sides_of_levels(first.height, mode >> 4);
+    std::uint64_t chunks = 0;
+    const auto add = [&](std::uint64_t width, std::uint64_t height) {
+      ChunkGrid level = first;
+      level.width = width;
+      level.height = height;
+      chunks += level.columns() * level.rows();
+    };
+    if (kind == mip_map) {
+      for (std::size_t i = 1; i < std::max(widths.size(), heights.size()); ++i)
+        add(i < widths.size() ? widths[i] : 1, i < heights.size() ? heights[i] : 1);
+      return chunks;
+    }
+    for (const std::uint64_t height : heights)
+      for (const std::uint64_t width : widths) add(width, height);
+    return chunks - first.columns() * first.rows();
+  }
+
+  static std::vector<std::uint64_t> sides_of_levels(std::uint64_t side, std::uint64_t rounding) {
+    std::vector<std::uint64_t> sides = {side};
+    while (sides.back() > 1) sides.push_back((sides.back() + rounding) / 2);
+    return sides;
   }
 
   std::uint64_t rows_of_chunk(char compression) const {
@@ -168,6 +223,7 @@ class HeaderCheck {
 
   const std::filesystem::path& path_;
   const Header& attributes_;
+  std::uint32_t flags_;
 };
 
 }  // namespace
@@ -200,18 +256,23 @@ bool has_right_size(const HeaderAttribute& attribute) {
   return it == fixed_sizes.end() || it->bytes == attribute.value.size();
 }
 
-void check_headers(const std::filesystem::path& path, const std::vector<Header>& parts, std::uint64_t file_bytes) {
-  PartSize whole{0, 0};
+std::vector<ChunkGrid> check_headers(const std::filesystem::path& path, const std::vector<Header>& parts,
+                                     std::uint32_t flags, std::uint64_t file_bytes) {
+  std::vector<ChunkGrid> grids;
+  std::uint64_t chunks = 0;
+  std::size_t channels = 0;
   for (const Header& part : parts) {
-    const PartSize size = HeaderCheck(path, part).run();
-    whole.chunks += size.chunks;
-    whole.channels += size.channels;
+    const PartSize size = HeaderCheck(path, part, flags).run();
+    grids.push_back(size.grid);
+    chunks += size.grid.columns() * size.grid.rows();
+    channels += size.channels;
   }
-  check_channel_count(path, whole.channels);
-  if (file_bytes / smallest_chunk_bytes < whole.chunks) {
-    refuse(path, std::to_string(file_bytes) + " bytes for " + std::to_string(whole.chunks) + " blocks of pixels",
+  check_channel_count(path, channels);
+  if (file_bytes / smallest_chunk_bytes < chunks) {
+    refuse(path, std::to_string(file_bytes) + " bytes for " + std::to_string(chunks) + " blocks of pixels",
            "a complete OpenEXR file");
   }
+  return grids;
 }
 
 }  // namespace dermis::exr

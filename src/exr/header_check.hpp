@@ -20,8 +20,30 @@ std::uint32_t little_endian(std::string_view bytes);
 /// False if the type of the attribute has a size and its value another.
 bool has_right_size(const HeaderAttribute& attribute);
 
-/// Throws Error(input_unsupported) unless a file of these parts and so many bytes is flat, within the limits, and can
-/// be complete.
-void check_headers(const std::filesystem::path& path, const std::vector<Header>& parts, std::uint64_t file_bytes);
+/// How the pixels of a part are cut into chunks, each of which is compressed by itself: some rows, or a tile.
+struct ChunkGrid {
+  std::uint64_t width;
+  std::uint64_t height;
+  std::int64_t first_row;  ///< of the data window
+  std::uint64_t chunk_width;
+  std::uint64_t chunk_height;
+  std::uint64_t pixel_bytes;
+  std::uint8_t compression;  ///< as files number it
+  bool has_tiles;
+  std::uint64_t chunks_of_smaller_levels;  ///< of a mip map, which nobody reads
+
+  std::uint64_t columns() const { return (width + chunk_width - 1) / chunk_width; }
+  std::uint64_t rows() const { return (height + chunk_height - 1) / chunk_height; }
+};
+
+/// Bits of the flags of a file.
+inline constexpr std::uint32_t tiled_flag = 0x200;
+inline constexpr std::uint32_t deep_flag = 0x800;
+inline constexpr std::uint32_t multi_part_flag = 0x1000;
+
+/// The chunks of each part. Throws Error(input_unsupported) unless a file of these parts and so many bytes is flat,
+/// within the limits, and can be complete.
+std::vector<ChunkGrid> check_headers(const std::filesystem::path& path, const std::vector<Header>& parts,
+                                     std::uint32_t flags, std::uint64_t file_bytes);
 
 }  // namespace dermis::exr

@@ -74,8 +74,8 @@ class ImageLibrary {
   virtual std::unique_ptr<PictureWriter> create(std::FILE* stream, const std::filesystem::path& path,
                                                 std::span<const PartDescription> parts) const = 0;
 
-  /// Writes packed RGB, 0..1 in sRGB, to a stream as a PNG file of 8 bits. Empty if it worked, else what went wrong.
-  virtual std::string write_png(std::FILE* stream, int width, int height, const float* rgb) const = 0;
+  /// The bytes of a PNG file of 8 bits, of packed RGB, 0..1 in sRGB. Throws as PictureWriter.
+  virtual std::string png(int width, int height, const float* rgb) const = 0;
 
   /// The colours of values 0..1 in a ramp of even brightness steps, as packed RGB in sRGB; empty if that failed.
   virtual std::vector<float> heat_colours(int width, int height, std::span<const float> values) const = 0;

@@ -230,15 +230,16 @@ class OpenImageIO final : public ImageLibrary {
     return std::make_unique<CreatedPicture>(stream, path, parts);
   }
 
-  std::string write_png(std::FILE* stream, int width, int height, const float* rgb) const override {
-    OIIO::Filesystem::IOFile proxy(stream, OIIO::Filesystem::IOProxy::Write);
+  std::string png(int width, int height, const float* rgb) const override {
+    OIIO::Filesystem::IOVecOutput memory;
     const auto output = OIIO::ImageOutput::create("png");
-    if (!output) return OIIO::geterror();
+    if (!output) throw std::runtime_error(OIIO::geterror());
     OIIO::ImageSpec spec(width, height, 3, OIIO::TypeDesc::UINT8);
     spec.attribute("oiio:ColorSpace", "sRGB");
-    const bool ok = output->set_ioproxy(&proxy) && output->open("picture.png", spec) &&
+    const bool ok = output->set_ioproxy(&memory) && output->open("picture.png", spec) &&
                     output->write_image(OIIO::TypeDesc::FLOAT, rgb) && output->close();
-    return ok ? "" : output->geterror();
+    if (!ok) throw std::runtime_error(output->geterror());
+    return {memory.buffer().begin(), memory.buffer().end()};
   }
 
   std::vector<float> heat_colours(int width, int height, std::span<const float> values) const override {

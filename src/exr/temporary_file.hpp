@@ -30,6 +30,9 @@ class TemporaryFile {
   /// For who writes to a stream; writes that fail are remembered, and told by `fail` and `commit`.
   std::FILE* stream() const { return stream_; }
 
+  /// Writes to the stream.
+  void write(std::string_view bytes) { std::fwrite(bytes.data(), 1, bytes.size(), stream_); }
+
   /// For who writes to a name.
   const std::filesystem::path& path() const { return path_; }
 

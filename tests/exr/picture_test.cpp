@@ -659,12 +659,15 @@ TEST_CASE("what cannot be written leaves nothing behind and what was there intac
 }
 
 TEST_CASE("a full disk leaves nothing behind and what was there intact") {
+  const bool has_parts = GENERATE(false, true);
   const TemporaryFolder folder;
   raw_exr::File file = small_file();
   file.data = {0, 0, 257, 89};
   Random random(4);
   file.channels = random_channels(random, file.data);
-  write_bytes(folder / "in.exr", raw_exr::bytes(file));
+  write_bytes(folder / "in.exr", has_parts
+                                     ? raw_exr::bytes_of_parts({raw_exr::part(file, "a"), raw_exr::part(file, "b")})
+                                     : raw_exr::bytes(file));
   const Picture picture = Picture::read(folder / "in.exr");
   picture.write(folder / "out.exr", "none");
   const std::string before = bytes_of_file(folder / "out.exr");
@@ -674,7 +677,7 @@ TEST_CASE("a full disk leaves nothing behind and what was there intact") {
   rlimit old;
   REQUIRE(::getrlimit(RLIMIT_FSIZE, &old) == 0);
   const auto old_handler = std::signal(SIGXFSZ, SIG_IGN);
-  for (const rlim_t limit : {rlim_t{0}, rlim_t{100}, size / 2, size - 1}) {
+  for (const rlim_t limit : {rlim_t{0}, rlim_t{100}, size / 4, size / 2, size - 1000, size - 1}) {
     rlimit small = old;
     small.rlim_cur = limit;
     REQUIRE(::setrlimit(RLIMIT_FSIZE, &small) == 0);

@@ -182,6 +182,55 @@ TEST_CASE("a disk that is full names the result and the reason, and leaves what 
   CHECK(folder.file_count() == 2);
 }
 
+TEST_CASE("pictures to look at are whole or the old ones, however full the disk is") {
+  const Made made;
+  const std::string in = " '" + made.scene.path + "'";
+  std::vector<std::string> calls = {"preview" + in + " -o out.png", "compare" + in + in + " --heatmap out.png"};
+  if (std::system("command -v gnuplot >/dev/null 2>&1") == 0)
+    calls.insert(calls.end(), {"profiles --plot out.png", "profiles --plot out.svg", "taps skin --plot out.svg"});
+  for (const std::string& call : calls) {
+    const std::string output = made.folder / (has(call, "out.svg") ? "out.svg" : "out.png");
+    bool is_written = false;
+    for (int blocks = 0; !is_written; blocks = blocks == 0 ? 1 : 4 * blocks) {
+      INFO(call << ", " << blocks << " KiB");
+      REQUIRE(blocks < 100000);
+      write_bytes(output, "old");
+      const std::size_t files = made.folder.file_count();
+      const std::string command = "cd '" + made.folder.path().string() + "' && (ulimit -f " + std::to_string(blocks) +
+                                  "; exec '" + DERMIS_PROGRAM + "' " + call + " 2>&1 >/dev/null) | cat >errors";
+      const int status = std::system(("bash -c \"set -o pipefail; " + command + "\"").c_str());
+      const std::string errors = bytes_of_file(made.folder / "errors");
+      INFO(errors);
+      is_written = WEXITSTATUS(status) == 0;
+      fs::remove(made.folder / "errors");
+      CHECK(made.folder.file_count() == files);
+      if (is_written) {
+        CHECK(errors.empty());
+        const std::string bytes = bytes_of_file(output);
+        CHECK((bytes.ends_with("IEND\xAE\x42\x60\x82") || bytes.ends_with("</svg>\n\n")));
+      } else {
+        CHECK(WEXITSTATUS(status) == 6);
+        CHECK(has(errors, "File too large"));
+        CHECK(bytes_of_file(output) == "old");
+      }
+    }
+  }
+}
+
+TEST_CASE("a gnuplot that fails leaves the old figure") {
+  const TemporaryFolder folder;
+  fs::create_directory(folder / "bin");
+  for (const char* script : {"#!/bin/sh\necho '<svg>'\nexit 3\n", "#!/bin/sh\n", "#!/bin/sh\nkill -9 $$\n"}) {
+    write_bytes(folder / "bin/gnuplot", script);
+    REQUIRE(chmod((folder / "bin/gnuplot").c_str(), 0755) == 0);
+    write_bytes(folder / "out.svg", "old");
+    check_refused(run_program({"profiles", "--plot", folder / "out.svg"}, {"PATH=" + (folder / "bin") + ":/bin"}), 6,
+                  {"--plot", "from gnuplot"});
+    CHECK(bytes_of_file(folder / "out.svg") == "old");
+    CHECK(folder.file_count() == 2);
+  }
+}
+
 TEST_CASE("signals that end the process leave no temporary file") {
   for (const int number : {SIGTERM, SIGINT, SIGHUP}) {
     INFO("signal " << number);

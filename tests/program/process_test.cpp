@@ -118,3 +118,36 @@ TEST_CASE("standard output that is full or closed is an error, also of help, and
   CHECK(WEXITSTATUS(std::system(filter.c_str())) == 0);
   run_well({"compare", folder / "out.exr", folder / "out.exr", "--identical"});
 }
+
+TEST_CASE("nobody who listens is no reason to stop, nobody who takes the results is", "[streams]") {
+  const TemporaryFolder folder;
+  const MadeScene scene = make_scene(folder / "in.exr", "touching", 20, 10, 3);
+  const auto code_of = [&](const std::string& call, const std::string& streams) {
+    // The reader of a pipe has ended when the program begins to write.
+    const std::string command = "{ sleep 0.1; " + quoted(DERMIS_PROGRAM) + " " + call + "; echo $? >" +
+                                quoted(folder / "code") + "; } " + streams;
+    INFO(command);
+    std::system(command.c_str());
+    return std::stoi(bytes_of_file(folder / "code"));
+  };
+  // Notes, warnings, progress and errors.
+  const std::string filter = "filter" + quoted(scene.path) + " -o" + quoted(folder / "out.exr") +
+                             " --mm-per-unit 1 --focal-px 60 --material 1=wax --material 77=wax --quality draft";
+  for (const char* streams : {"2>/dev/full >/dev/null", "2>&1 >/dev/null | true", "2>&- >/dev/null"}) {
+    INFO(streams);
+    CHECK(code_of(filter, streams) == 0);
+    CHECK(code_of("info" + quoted(folder / "none.exr"), streams) == 3);
+    CHECK(code_of("filter --nonsense", streams) == 2);
+  }
+  // More than a stream holds back, and less.
+  for (const char* call : {"taps skin --rank 2 --taps 63 --json -", "profiles", "taps skin --help"}) {
+    INFO(call);
+    for (const char* streams : {">/dev/full", ">&-", "| true"}) {
+      INFO(streams);
+      CHECK(code_of(call, "2>" + quoted(folder / "errors") + " " + streams) == 6);
+      const std::string errors = bytes_of_file(folder / "errors");
+      CHECK(errors.starts_with("dermis: error: standard output: got "));
+      CHECK(errors.find('\n') == errors.size() - 1);
+    }
+  }
+}

@@ -364,6 +364,23 @@ TEST_CASE("the figure of taps has all its panels") {
   run_well({"taps", "wax", "--pixel-mm", "0.0001", "--plot", folder / "wide.svg"});
 }
 
+TEST_CASE("no name of a file is run by the program that draws a figure") {
+  if (!is_installed("gnuplot")) return;
+  for (const std::string name :
+       {"a\nsystem 'touch run'\n", "a'\nsystem 'touch run'\n'", "a'; system 'touch run'; '", "`touch run`",
+        "$(touch run)", "a\"; system \"touch run\"; \"", "\\'; system 'touch run'"}) {
+    INFO(name);
+    const TemporaryFolder folder;
+    std::ofstream(folder / (name + ".csv")) << "0, 1, 1, 1\n1, .5, .5, .5\n2, 0, 0, 0\n";
+    const Outcome outcome = run_program({"taps", "table:" + name + ".csv", "--taps", "7", "--plot", name + ".svg"},
+                                        {.folder = folder.path().string()});
+    INFO(outcome.errors);
+    CHECK(outcome.exit_code == 0);
+    CHECK(has(read_file(folder / (name + ".svg")), "weights of the taps"));
+    CHECK(folder.file_count() == 2);
+  }
+}
+
 TEST_CASE("bad calls of taps name the option, and nothing is written") {
   const TemporaryFolder folder;
   const std::string out = folder / "out";

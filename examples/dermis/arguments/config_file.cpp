@@ -10,6 +10,7 @@
 
 #include "dermis/error.hpp"
 #include "exr/header.hpp"
+#include "exr/message_text.hpp"
 #include "exr/names_like.hpp"
 #include "files/input_file.hpp"
 
@@ -66,7 +67,7 @@ const CLI::Option& option_named(const CLI::App& command, const std::string& name
   std::vector<std::string> names;
   for (const CLI::Option* option : command.get_options())
     if (option->get_configurable() && !option->get_lnames().empty()) names.push_back(option->get_lnames().front());
-  throw Error(ErrorCode::usage, fmt::format("{} {}", config, path), "the setting " + name,
+  throw Error(ErrorCode::usage, fmt::format("{} {}", config, path), "the setting " + exr::shown(name),
               "a setting that there is, as " + exr::names_like(name, names));
 }
 
@@ -96,7 +97,8 @@ std::vector<std::string> with_config(const CLI::App& command, const std::vector<
   for (const CLI::ConfigItem& item : CLI::ConfigTOML().from_config(text)) {
     if (!item.parents.empty())
       throw Error(ErrorCode::usage, fmt::format("{} {}", config, path),
-                  fmt::format("the section [{}]", fmt::join(item.parents, ".")), "settings outside sections");
+                  fmt::format("the section [{}]", exr::shown(fmt::format("{}", fmt::join(item.parents, ".")))),
+                  "settings outside sections");
     const CLI::Option& option = option_named(command, item.name, path);
     const std::set<CLI::Option*> excluded = option.get_excludes();
     if (is_given(&option) || std::any_of(excluded.begin(), excluded.end(), is_given)) continue;

@@ -6,10 +6,12 @@
 #include "arguments/number_argument.hpp"
 #include "dermis/error.hpp"
 #include "files/pocl_cache.hpp"
+#include "report/messages.hpp"
 
 namespace dermis::program {
 
 std::vector<DeviceInfo> devices_there_are() {
+  if (const auto warning = cache_warning()) print_warning(*warning);
   std::vector<DeviceInfo> devices = Device::list();
   if (!devices.empty()) return devices;
   const auto problem = cache_problem();

@@ -6,6 +6,7 @@
 #include "arguments/number_argument.hpp"
 #include "arguments/profile_argument.hpp"
 #include "dermis/error.hpp"
+#include "exr/message_text.hpp"
 
 namespace dermis::program {
 namespace {
@@ -13,7 +14,7 @@ namespace {
 constexpr int max_id = 65535;
 
 [[noreturn]] void malformed(const std::string& text) {
-  throw Error(ErrorCode::usage, "--material", text.empty() ? "nothing" : text,
+  throw Error(ErrorCode::usage, "--material", text.empty() ? "nothing" : exr::shown(text),
               "ID=PROFILE with an id from 0 to 65535, as 1=skin, or NAME=PROFILE with a name in the Cryptomatte");
 }
 

@@ -7,6 +7,7 @@
 
 #include "arguments/number_argument.hpp"
 #include "dermis/error.hpp"
+#include "exr/message_text.hpp"
 #include "files/gaussian_file.hpp"
 #include "files/table_file.hpp"
 
@@ -62,7 +63,9 @@ struct Spelling {
   std::string_view rest() const { return text.substr(prefix.size()); }
   std::string file() const { return std::string(rest()); }
 
-  [[noreturn]] void malformed(std::string_view wanted) const { throw Error(ErrorCode::usage, argument, text, wanted); }
+  [[noreturn]] void malformed(std::string_view wanted) const {
+    throw Error(ErrorCode::usage, argument, exr::shown(text), wanted);
+  }
 };
 
 /// albedo=R/G/B
@@ -216,7 +219,7 @@ Profile parse_profile(std::string_view argument, std::string_view text) {
     names += kind.spellings;
     names += &kind == &kinds.back() ? "" : &kind + 1 == &kinds.back() ? " or " : ", ";
   }
-  throw Error(ErrorCode::usage, argument, text.empty() ? "nothing" : text, names);
+  throw Error(ErrorCode::usage, argument, text.empty() ? "nothing" : exr::shown(text), names);
 }
 
 std::string without_folders(std::string_view text) {

@@ -6,6 +6,8 @@
 #include <filesystem>
 #include <utility>
 
+#include "exr/message_text.hpp"
+
 namespace dermis::program {
 namespace {
 
@@ -22,7 +24,7 @@ std::string lower_case(std::string text) {
 }  // namespace
 
 std::string refusal(std::string_view seen, std::string_view wanted) {
-  return fmt::format("got {}, want {}", seen.empty() ? "nothing" : seen, wanted);
+  return fmt::format("got {}, want {}", seen.empty() ? "nothing" : exr::shown(seen), wanted);
 }
 
 CLI::Validator one_of(std::vector<std::string> words) {

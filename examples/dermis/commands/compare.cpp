@@ -18,10 +18,12 @@
 #include "commands/truth_comparison.hpp"
 #include "dermis/error.hpp"
 #include "dermis/exr.hpp"
+#include "exr/message_text.hpp"
 #include "files/channel_groups.hpp"
 #include "files/mask_channel.hpp"
 #include "files/output_file.hpp"
 #include "files/picture_png.hpp"
+#include "report/standard_output.hpp"
 
 namespace dermis::program {
 namespace {
@@ -48,20 +50,23 @@ exr::Window overlap_of(const exr::Window& a, const exr::Window& b) {
   const exr::Window both = common_window(a, b);
   if (both.width < 1 || both.height < 1)
     throw Error(ErrorCode::input_unsupported, "A", text_of(a), "a window that overlaps that of B, " + text_of(b));
-  if (!(a == b)) fmt::print("windows: A {}, B {}; compared: {}\n", text_of(a), text_of(b), text_of(both));
+  if (!(a == b)) print(fmt::format("windows: A {}, B {}; compared: {}\n", text_of(a), text_of(b), text_of(both)));
   return both;
 }
 
 void print_missing(std::string_view picture, const std::vector<std::string>& channels) {
-  if (!channels.empty()) fmt::print("only in {}: {}\n", picture, fmt::join(channels, " "));
+  if (!channels.empty())
+    print(
+        fmt::format("only in {}: {}\n", picture, exr::escaped(fmt::format("{}", fmt::join(channels, " ")), SIZE_MAX)));
 }
 
 void print_difference(const ChannelGroup& group, const oracle::Difference& difference, const exr::Window& window) {
   const std::string& channel = group.channels[static_cast<std::size_t>(difference.max_channel)];
-  fmt::print("{:<24} rel_l2 {:<11.4g} rmse {:<11.4g} psnr {:<7.2f} max {:<11.4g} at ({}, {}) {}: {:.9g} and {:.9g}\n",
-             group.name.empty() ? "-" : group.name, difference.relative_l2, difference.rmse, difference.psnr_db,
-             difference.max, window.x + difference.max_x, window.y + difference.max_y, channel, difference.max_a,
-             difference.max_b);
+  print(fmt::format(
+      "{:<24} rel_l2 {:<11.4g} rmse {:<11.4g} psnr {:<7.2f} max {:<11.4g} at ({}, {}) {}: {:.9g} and {:.9g}\n",
+      group.name.empty() ? "-" : exr::escaped(group.name), difference.relative_l2, difference.rmse, difference.psnr_db,
+      difference.max, window.x + difference.max_x, window.y + difference.max_y, exr::escaped(channel), difference.max_a,
+      difference.max_b));
 }
 
 /// Values that are not finite in both and equal in kind count as equal, as in oracle::compare.
@@ -92,10 +97,8 @@ class HeatMap {
     for (const float value : values_)
       if (std::isfinite(value)) largest = std::max(largest, value);
     for (float& value : values_) value = !std::isfinite(value) ? 1.0F : largest > 0 ? value / largest : 0.0F;
-    TemporaryFile temporary(path, "--heatmap");
-    write_heatmap_png(temporary, width_, height_, values_);
-    temporary.commit();
-    fmt::print("heat map: brightest = {:.4g}\n", largest);
+    write_file("--heatmap", path, heatmap_png(width_, height_, values_));
+    print(fmt::format("heat map: brightest = {:.4g}\n", largest));
   }
 
  private:
@@ -108,15 +111,15 @@ class HeatMap {
 bool print_different_bits(const exr::Picture& a, const exr::Picture& b, const SharedChannels& shared,
                           const exr::Window& window, const std::optional<oracle::Picture>& mask) {
   bool identical = a.data_window() == b.data_window();
-  if (!identical) fmt::print("not identical: data windows\n");
+  if (!identical) print("not identical: data windows\n");
   for (const ChannelGroup& group : shared.groups) {
     for (const std::string& channel : group.channels) {
       const std::int64_t different = count_different_bits(a, b, channel, window, mask);
-      if (different > 0) fmt::print("not identical: {}, {} values\n", channel, different);
+      if (different > 0) print(fmt::format("not identical: {}, {} values\n", exr::escaped(channel), different));
       identical = identical && different == 0;
     }
   }
-  if (identical) fmt::print("identical\n");
+  if (identical) print("identical\n");
   return identical;
 }
 

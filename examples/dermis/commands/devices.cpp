@@ -6,6 +6,7 @@
 #include "arguments/device_arguments.hpp"
 #include "commands/commands.hpp"
 #include "dermis/device.hpp"
+#include "report/standard_output.hpp"
 
 namespace dermis::program {
 namespace {
@@ -14,9 +15,9 @@ int run_devices() {
   const std::vector<DeviceInfo> devices = devices_there_are();
   for (std::size_t i = 0; i < devices.size(); ++i) {
     const DeviceInfo& device = devices[i];
-    fmt::print("{}  {}, {}: {}, {} compute units, {} floats wide, {:.1f} GiB, driver {}\n", i, device.name,
-               device.platform, device.type, device.compute_units, device.vector_width,
-               static_cast<double>(device.memory_bytes) / (1 << 30), device.driver);
+    print(fmt::format("{}  {}, {}: {}, {} compute units, {} floats wide, {:.1f} GiB, driver {}\n", i, device.name,
+                      device.platform, device.type, device.compute_units, device.vector_width,
+                      static_cast<double>(device.memory_bytes) / (1 << 30), device.driver));
   }
   return 0;
 }

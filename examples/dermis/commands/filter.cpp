@@ -23,6 +23,7 @@
 #include "commands/surface_input.hpp"
 #include "dermis/error.hpp"
 #include "dermis/version.hpp"
+#include "exr/message_text.hpp"
 #include "files/beauty_composition.hpp"
 #include "files/lossy_channels.hpp"
 #include "files/other_passes.hpp"
@@ -32,6 +33,7 @@
 #include "files/view_factor.hpp"
 #include "report/messages.hpp"
 #include "report/progress_bar.hpp"
+#include "report/standard_output.hpp"
 #include "report/stats_report.hpp"
 #include "report/stopwatch.hpp"
 #include "report/tile_map.hpp"
@@ -324,14 +326,15 @@ void write_pictures(const FilterJob& job, const OutputFiles& files, const std::v
   const int width = picture.width();
   const int height = picture.height();
   std::deque<TemporaryFile> drawn;
-  if (!files.preview.empty())
-    write_srgb_png(drawn.emplace_back(files.preview, "--preview"), width, height,
-                   exr::load(picture, shown.report.roles, Role::beauty));
-  if (!files.tile_map.empty())
-    write_tile_map_png(drawn.emplace_back(files.tile_map, "--tile-map"), width, height, shown.report.stats.tiles,
-                       shown.light);
+  const auto draw = [&](const std::string& path, std::string_view argument, const auto& make_png) {
+    if (!path.empty()) drawn.emplace_back(path, argument).write(make_png());
+  };
+  draw(files.preview, "--preview",
+       [&] { return srgb_png(width, height, exr::load(picture, shown.report.roles, Role::beauty)); });
+  draw(files.tile_map, "--tile-map",
+       [&] { return tile_map_png(width, height, shown.report.stats.tiles, shown.light); });
   if (shown.views_report)
-    write_view_report_png(drawn.emplace_back(files.view_report, "--view-report"), width, height, *shown.views_report);
+    draw(files.view_report, "--view-report", [&] { return view_report_png(width, height, *shown.views_report); });
   picture.write(files.output, job.compression, written_channels(results));
   for (TemporaryFile& file : drawn) file.commit();
 }
@@ -370,9 +373,9 @@ Outcome filter_picture(const FilterJob& job, const PictureFiles& files, FilterSe
     result.report.input = messages.inputs();
     result.report.notes = messages.notes();
     result.report.warnings = messages.warnings();
-    if (!files.outputs.tile_map.empty()) fmt::print("{}", legend_of(result.report.stats.tiles));
-    if (result.views_report) fmt::print("{}", legend_of(*result.views_report, result.report.views));
-    if (job.stats) fmt::print("{}", text_of(result.report));
+    if (!files.outputs.tile_map.empty()) print(legend_of(result.report.stats.tiles));
+    if (result.views_report) print(legend_of(*result.views_report, result.report.views));
+    if (job.stats) print(text_of(result.report));
     reports.push_back(std::move(result.report));
   }
   if (!files.outputs.stats_json.empty())
@@ -391,7 +394,7 @@ int filter_sequence(const FilterJob& job, FilterSession& session, Messages& mess
   int code = 0;
   for (std::size_t i = 0; i < count; ++i) {
     const auto& [input, outputs] = job.pictures[i];
-    if (job.stats || !outputs.tile_map.empty()) fmt::print("{}\n", outputs.output);
+    if (job.stats || !outputs.tile_map.empty()) print(exr::escaped(outputs.output) + "\n");
     messages.begin(input);
     try {
       if (filter_picture(job, job.pictures[i], session, messages) == Outcome::copied) ++copied;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "arguments/cache_argument.hpp"
+#include "arguments/device_arguments.hpp"
 #include "arguments/material_arguments.hpp"
 #include "arguments/picture_arguments.hpp"
 #include "arguments/profile_argument.hpp"
@@ -20,12 +21,14 @@
 #include "dermis/error.hpp"
 #include "dermis/exr.hpp"
 #include "dermis/plan.hpp"
+#include "exr/message_text.hpp"
 #include "files/loaded_frame.hpp"
 #include "files/picture_roles.hpp"
 #include "files/surface_pixels.hpp"
 #include "report/json_text.hpp"
 #include "report/messages.hpp"
 #include "report/role_text.hpp"
+#include "report/standard_output.hpp"
 
 namespace dermis::program {
 namespace {
@@ -200,7 +203,7 @@ std::optional<Memory> find_memory(const Info& info, const std::vector<NamedProfi
     const int width = info.picture.width();
     const int height = info.picture.height();
     const std::vector<Material> materials = materials_of(info, asked, mm_per_unit);
-    return Memory{Plan::scratch_bytes(Device::open(), materials, *frames, options, width, height),
+    return Memory{Plan::scratch_bytes(open_device({}), materials, *frames, options, width, height),
                   pixel_bytes * static_cast<std::size_t>(width) * static_cast<std::size_t>(height)};
   } catch (const Error&) {
     return std::nullopt;
@@ -259,7 +262,7 @@ std::string text_of(const exr::Window& window) {
 
 std::string text_of(const Surface& surface) {
   std::string text = fmt::format("  {:<8} {:>10} pixels",
-                                 surface.name ? *surface.name
+                                 surface.name ? exr::escaped(*surface.name)
                                  : surface.id ? std::to_string(*surface.id)
                                               : "any",
                                  surface.pixels.pixels);
@@ -278,15 +281,16 @@ std::string text_of(const Surface& surface) {
 }
 
 std::string text_of(const Info& info) {
-  std::string text = fmt::format("file            {}\n", info.path);
+  std::string text = fmt::format("file            {}\n", exr::escaped(info.path));
   text += fmt::format("data window     {}\n", text_of(info.picture.data_window()));
   text += fmt::format("display window  {}\n", text_of(info.picture.display_window()));
   text += fmt::format("pixel aspect    {}\n", info.picture.pixel_aspect());
   text += fmt::format("compression     {}\n", info.picture.compression());
   text += fmt::format("channels        {}\n", info.picture.channels().size());
-  text += fmt::format("layer           {}\n", info.roles.layer.empty() ? "none" : info.roles.layer);
+  text += fmt::format("layer           {}\n", info.roles.layer.empty() ? "none" : exr::escaped(info.roles.layer));
   if (const auto views = info.picture.views(); !views.empty())
-    text += fmt::format("views           {}, of which this is {}\n", fmt::join(views, ", "), info.roles.view);
+    text += fmt::format("views           {}, of which this is {}\n",
+                        exr::escaped(fmt::format("{}", fmt::join(views, ", "))), exr::escaped(info.roles.view));
   text += fmt::format("renderer        {}\n",
                       info.roles.renderer.empty()
                           ? "none whose names are known"
@@ -295,11 +299,12 @@ std::string text_of(const Info& info) {
   for (const exr::RoleInfo& role : exr::role_table)
     text += fmt::format("  {:<13} {}\n", role.name, program::text_of(info.roles[role.role]));
   for (const auto& [name, names] : info.cryptomattes) {
-    text += fmt::format("cryptomatte     {}{}\n", name, names.empty() ? ", without a manifest of its names" : "");
-    for (const auto& [of, pixels] : names) text += fmt::format("  {:<30} {:>10} pixels\n", of, pixels);
+    text += fmt::format("cryptomatte     {}{}\n", exr::escaped(name),
+                        names.empty() ? ", without a manifest of its names" : "");
+    for (const auto& [of, pixels] : names) text += fmt::format("  {:<30} {:>10} pixels\n", exr::escaped(of), pixels);
   }
   text += fmt::format("camera          {}\n",
-                      info.camera ? program::text_of(*info.camera) : "none, " + info.camera_problem);
+                      info.camera ? program::text_of(*info.camera) : "none, " + exr::escaped(info.camera_problem));
   if (!info.surfaces.empty()) text += "materials\n";
   for (const Surface& surface : info.surfaces) text += text_of(surface);
   if (info.pixels_without_id > 0) text += fmt::format("  {:<8} {:>10} pixels\n", "no id", info.pixels_without_id);
@@ -325,7 +330,7 @@ int run_info(const InfoArguments& arguments) {
   find_surfaces(info, profiles, arguments.picture.mm_per_unit);
   if (arguments.views) find_unseen(info, arguments, profiles);
   info.memory = find_memory(info, profiles, arguments.picture.mm_per_unit, cache_folder_of(arguments.cache_dir));
-  fmt::print("{}", arguments.json ? json_text_of(info) : text_of(info));
+  print(arguments.json ? json_text_of(info) : text_of(info));
   return 0;
 }
 

@@ -56,9 +56,7 @@ int run_preview(const PreviewArguments& arguments) {
   std::vector<Beauty> beauties;
   for (const std::string& path : arguments.pictures) beauties.push_back(read_beauty(path, arguments.roles));
   const Beauty sheet = side_by_side(beauties);
-  TemporaryFile file(arguments.output, "--output");
-  write_srgb_png(file, sheet.width, sheet.height, sheet.rgb);
-  file.commit();
+  write_file("--output", arguments.output, srgb_png(sheet.width, sheet.height, sheet.rgb));
   return 0;
 }
 

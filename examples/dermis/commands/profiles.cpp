@@ -9,15 +9,17 @@
 #include "dermis/profile.hpp"
 #include "files/output_file.hpp"
 #include "report/profile_plot.hpp"
+#include "report/standard_output.hpp"
 
 namespace dermis::program {
 namespace {
 
 void print_table() {
-  fmt::print("{:<16}{:>30}  {}\n", "name", "99.9 % within, mm (R G B)", "source");
+  print(fmt::format("{:<16}{:>30}  {}\n", "name", "99.9 % within, mm (R G B)", "source"));
   for (const Preset& preset : presets()) {
     const auto radius = [&](int channel) { return preset.profile.radius(channel, 0.999); };
-    fmt::print("{:<16}{:>10.3g}{:>10.3g}{:>10.3g}  {}\n", preset.name, radius(0), radius(1), radius(2), preset.source);
+    print(fmt::format("{:<16}{:>10.3g}{:>10.3g}{:>10.3g}  {}\n", preset.name, radius(0), radius(1), radius(2),
+                      preset.source));
   }
 }
 

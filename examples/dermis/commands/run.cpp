@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <array>
 #include <csignal>
-#include <cstdio>
 #include <cstdlib>
 #include <string>
 #include <string_view>
@@ -20,6 +19,7 @@
 #include "exr/temporary_file.hpp"
 #include "files/pocl_cache.hpp"
 #include "report/messages.hpp"
+#include "report/standard_output.hpp"
 
 namespace dermis::program {
 namespace {
@@ -30,9 +30,9 @@ int fail(ErrorCode code, std::string_view message) {
 }
 
 int finish(int code) {
-  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
-    return fail(ErrorCode::output, "standard output: got a write error, want all of it out");
-  return code;
+  const auto problem = output_problem();
+  if (!problem) return code;
+  return fail(ErrorCode::output, Error(ErrorCode::output, "standard output", *problem, "all of it out").what());
 }
 
 /// The word where a command should stand is not one. CLI11 would only say that a command is missing.
@@ -74,6 +74,7 @@ int parse_and_run(int argc, char** argv) {
   }
   const auto chosen =
       std::find_if(commands.begin(), commands.end(), [](const Command& command) { return command.app->parsed(); });
+  choose_cache();
   return finish(chosen->run());
 }
 
@@ -124,6 +125,7 @@ void handle_signals() {
     sigaction(number, &action, nullptr);
   }
   std::signal(SIGXFSZ, SIG_IGN);
+  std::signal(SIGPIPE, SIG_IGN);
 }
 
 int run(int argc, char** argv) {
@@ -135,6 +137,7 @@ int run(int argc, char** argv) {
   is_running = true;
   const int code = parse_and_run_safely(argc, argv);
   is_running = false;
+  remove_temporary_cache();
   return code;
 }
 

@@ -8,7 +8,7 @@ namespace dermis::program {
 int run(int argc, char** argv);
 
 /// From here on a signal that ends the process leaves no temporary files, while one that is ignored, as by nohup, stays
-/// so; and a limit on the size of files makes writing fail. `run` does this first.
+/// so; and a limit on the size of files, or a pipe that nobody reads, makes writing fail. `run` does this first.
 void handle_signals();
 
 }  // namespace dermis::program

@@ -20,6 +20,7 @@
 #include "dermis/oracle/scenes.hpp"
 #include "files/lights_file.hpp"
 #include "files/output_file.hpp"
+#include "report/standard_output.hpp"
 
 namespace dermis::program {
 namespace {
@@ -98,7 +99,7 @@ void write_light(const SceneArguments& arguments, const oracle::SceneLight& ligh
   map.write(arguments.shadow_map, "zip");
   const std::filesystem::path folder = std::filesystem::absolute(arguments.lights).parent_path();
   const auto name = std::filesystem::absolute(arguments.shadow_map).lexically_proximate(folder);
-  write_text("--lights", arguments.lights, lights_json(light.light, name.string()));
+  write_file("--lights", arguments.lights, lights_json(light.light, name.string()));
 }
 
 int run_scene(const SceneArguments& arguments) {
@@ -112,7 +113,8 @@ int run_scene(const SceneArguments& arguments) {
     write_light(arguments, oracle::scene_light(arguments.name, size->width, size->height, arguments.px_per_mm,
                                                projection, arguments.texels));
   picture_of(scene).write(arguments.output, "zip");
-  fmt::print("{}={:.17g}\nmm_per_unit=1\n", arguments.orthographic ? "px_per_unit" : "focal_px", scene.camera.scale_x);
+  print(fmt::format("{}={:.17g}\nmm_per_unit=1\n", arguments.orthographic ? "px_per_unit" : "focal_px",
+                    scene.camera.scale_x));
   return 0;
 }
 

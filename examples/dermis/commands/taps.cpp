@@ -19,6 +19,7 @@
 #include "commands/commands.hpp"
 #include "dermis/error.hpp"
 #include "files/output_file.hpp"
+#include "report/standard_output.hpp"
 #include "report/taps_plot.hpp"
 #include "report/taps_report.hpp"
 #include "report/taps_source.hpp"
@@ -100,7 +101,7 @@ int run_taps(const TapsArguments& arguments) {
                         source_of(report, *arguments.language));
   const std::vector<NamedFile> outputs = outputs_of(arguments);
   if (std::none_of(outputs.begin(), outputs.end(), [](const NamedFile& output) { return output.path == "-"; }))
-    fmt::print("{}", table_of(report));
+    print(table_of(report));
   return 0;
 }
 

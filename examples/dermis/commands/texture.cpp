@@ -22,11 +22,14 @@
 #include "dermis/error.hpp"
 #include "dermis/exr.hpp"
 #include "dermis/version.hpp"
+#include "exr/message_text.hpp"
 #include "files/loaded_frame.hpp"
 #include "files/lossy_channels.hpp"
 #include "files/output_file.hpp"
 #include "files/pass_channels.hpp"
 #include "files/picture_roles.hpp"
+#include "report/json_text.hpp"
+#include "report/standard_output.hpp"
 
 namespace dermis::program {
 namespace {
@@ -124,9 +127,9 @@ void print_stats(bool as_table, const std::string& json_path, const TextureOptio
                                        {"total_ms", stats.total_ms}};
   if (as_table) {
     for (const auto& [name, value] : json.items())
-      fmt::print("{:<18}{}\n", name, value.is_string() ? value.get<std::string>() : value.dump());
+      print(fmt::format("{:<18}{}\n", name, value.is_string() ? exr::escaped(value.get<std::string>()) : value.dump()));
   }
-  write_text_or_print("--stats-json", json_path, json.dump(2) + "\n");
+  write_text_or_print("--stats-json", json_path, json_text(json));
 }
 
 /// A device and a plan, as long as pictures have the same images.

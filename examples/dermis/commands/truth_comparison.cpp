@@ -13,6 +13,7 @@
 #include "dermis/exr.hpp"
 #include "dermis/oracle/compare.hpp"
 #include "files/mask_channel.hpp"
+#include "report/standard_output.hpp"
 
 namespace dermis::program {
 namespace {
@@ -88,10 +89,10 @@ Compared load_compared(const TruthArguments& arguments, const exr::Picture& resu
   Compared compared{values_of(result, roles, true), {}};
   for (std::size_t i = 0; i < pictures.size(); ++i)
     compared.truths.push_back(values_of(pictures[i], truth_roles[i], false));
-  fmt::print("compared: {}; {}\n",
-             has_light ? "diffuse light without the albedo" : "the beauty, for want of diffuse light",
-             pictures.size() > 1 ? "the noise of the truths is left out"
-                                 : "the noise of the truth is in the error: a second one of another seed takes it out");
+  print(fmt::format(
+      "compared: {}; {}\n", has_light ? "diffuse light without the albedo" : "the beauty, for want of diffuse light",
+      pictures.size() > 1 ? "the noise of the truths is left out"
+                          : "the noise of the truth is in the error: a second one of another seed takes it out"));
   return compared;
 }
 
@@ -99,9 +100,9 @@ double print_error(const std::string& name, const Compared& compared, const orac
   const oracle::TruthError error =
       oracle::compare_with_truth(compared.result, compared.truths.front(), compared.truths.back(), where);
   const auto pixels = std::count(where.values.begin(), where.values.end(), 1.0);
-  fmt::print("{:<16} {:>9} pixels  rel_l2 {:<9.4g}", name, pixels, error.relative_l2);
-  if (compared.truths.size() > 1) fmt::print("  noise of one truth {:.4g}", error.noise);
-  fmt::print("\n");
+  print(fmt::format("{:<16} {:>9} pixels  rel_l2 {:<9.4g}", name, pixels, error.relative_l2));
+  if (compared.truths.size() > 1) print(fmt::format("  noise of one truth {:.4g}", error.noise));
+  print("\n");
   return error.relative_l2;
 }
 

@@ -16,6 +16,7 @@
 #include "dermis/error.hpp"
 #include "files/picture_roles.hpp"
 #include "report/messages.hpp"
+#include "report/standard_output.hpp"
 #include "report/stopwatch.hpp"
 
 namespace dermis::program {
@@ -81,8 +82,8 @@ int run_warm(const WarmArguments& arguments) {
   }
   const std::string& folder = job.options.cache_folder;
   const bool is_kept = can_keep_taps(folder);
-  fmt::print("ready after {:.2f} s: kernels for {}; {}\n", stopwatch.lap_ms() / 1000, session.device().info().name,
-             is_kept ? "taps in " + folder : "taps are kept nowhere");
+  print(fmt::format("ready after {:.2f} s: kernels for {}; {}\n", stopwatch.lap_ms() / 1000,
+                    session.device().info().name, is_kept ? "taps in " + folder : "taps are kept nowhere"));
   return 0;
 }
 

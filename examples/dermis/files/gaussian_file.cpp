@@ -22,6 +22,9 @@ class Reader {
     const json root = read_json(argument_, path_, "a JSON file with the terms of a sum of Gaussians");
     if (!root.is_object() || !root.contains("terms") || !root["terms"].is_array() || root["terms"].empty())
       fail("no list of terms", R"({"terms": [{"variance_mm2": v, "weight": [r, g, b]}, ...]})");
+    constexpr std::size_t most_terms = 256;
+    if (root["terms"].size() > most_terms)
+      fail(fmt::format("{} terms", root["terms"].size()), fmt::format("at most {}", most_terms));
     std::vector<GaussianTerm> terms;
     for (const json& term : root["terms"]) terms.push_back(read_term(term, fmt::format("terms[{}]", terms.size())));
     for (std::size_t channel = 0; channel < 3; ++channel)

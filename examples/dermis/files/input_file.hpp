@@ -5,12 +5,14 @@
 #include <string>
 #include <string_view>
 
+#include "exr/text_file.hpp"
+
 namespace dermis::program {
 
-/// Reads a text file. Throws Error(input_missing) that names `argument` and `wanted` if there is none.
-std::string read_text(std::string_view argument, const std::string& path, std::string_view wanted);
+using exr::read_text;
 
-/// Reads a JSON file. Throws as read_text, and Error(input_unsupported) that names argument and file.
+/// Reads a JSON file of at most 32 levels. Throws as read_text, and Error(input_unsupported) that names argument and
+/// file.
 nlohmann::json read_json(std::string_view argument, const std::string& path, std::string_view wanted);
 
 /// A value of a JSON file, for an error: at most 80 characters of it.

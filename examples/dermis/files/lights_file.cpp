@@ -11,7 +11,9 @@
 
 #include "dermis/error.hpp"
 #include "dermis/exr.hpp"
+#include "exr/message_text.hpp"
 #include "files/input_file.hpp"
+#include "report/json_text.hpp"
 
 namespace dermis::program {
 namespace {
@@ -107,7 +109,7 @@ class Object {
 
  private:
   std::string path_of(std::string_view key) const {
-    return fmt::format("{}{}{}", place_, place_.empty() || key.empty() ? "" : ".", key);
+    return fmt::format("{}{}{}", place_, place_.empty() || key.empty() ? "" : ".", exr::shown(key));
   }
 
   double number_in(const char* key, const json& value, std::string_view wanted) const {
@@ -132,7 +134,10 @@ std::vector<float> depths_of(const Object& map, const exr::Picture& picture) {
 
 void read_map(const Object& object, const std::filesystem::path& folder, Light& light, std::vector<float>& depths) {
   object.allow({"file", "channel", "view_projection", "depth", "bias"});
-  const exr::Picture picture = exr::Picture::read(folder / object.text("file", "the name of an OpenEXR file"));
+  constexpr const char* wanted = "the name of an OpenEXR file";
+  const std::string name = object.text("file", wanted);
+  if (name.find('\0') != std::string::npos) object.fail("file", exr::shown(name), wanted);
+  const exr::Picture picture = exr::Picture::read(folder / name);
   depths = depths_of(object, picture);
   light.map.width = picture.width();
   light.map.height = picture.height();
@@ -214,7 +219,7 @@ std::string lights_json(const Light& light, const std::string& map_name) {
                       {"view_projection", rows},
                       {"depth", depth_names[static_cast<std::size_t>(light.map.kind)]},
                       {"bias", light.map.bias_units}}}};
-  return json{{"lights", {its}}}.dump(2) + "\n";
+  return json_text(json{{"lights", {its}}});
 }
 
 }  // namespace dermis::program

@@ -6,6 +6,7 @@
 #include <system_error>
 
 #include "dermis/error.hpp"
+#include "report/standard_output.hpp"
 
 namespace dermis::program {
 
@@ -36,17 +37,17 @@ void check_outputs(std::vector<NamedFile> taken, const std::vector<NamedFile>& o
   }
 }
 
-void write_text(std::string_view argument, const fs::path& path, std::string_view text) {
+void write_file(std::string_view argument, const fs::path& path, std::string_view bytes) {
   TemporaryFile file(path, argument);
-  std::fwrite(text.data(), 1, text.size(), file.stream());
+  file.write(bytes);
   file.commit();
 }
 
 void write_text_or_print(std::string_view argument, const std::string& path, std::string_view text) {
   if (path == "-")
-    fmt::print("{}", text);
+    print(text);
   else if (!path.empty())
-    write_text(argument, path, text);
+    write_file(argument, path, text);
 }
 
 }  // namespace dermis::program

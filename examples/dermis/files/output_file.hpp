@@ -27,8 +27,8 @@ bool is_same_file(const std::string& a, const std::string& b);
 /// is `taken`, and as check_writable.
 void check_outputs(std::vector<NamedFile> taken, const std::vector<NamedFile>& outputs);
 
-/// Writes a text file.
-void write_text(std::string_view argument, const std::filesystem::path& path, std::string_view text);
+/// Throws Error(output) that names `argument`.
+void write_file(std::string_view argument, const std::filesystem::path& path, std::string_view bytes);
 
 /// Writes a text file, or prints the text if its name is "-"; nothing if it has no name.
 void write_text_or_print(std::string_view argument, const std::string& path, std::string_view text);

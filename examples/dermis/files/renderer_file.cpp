@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "dermis/error.hpp"
+#include "exr/message_text.hpp"
 #include "files/input_file.hpp"
 
 namespace dermis::program {
@@ -34,7 +35,7 @@ std::vector<std::string> names_of(const json& value, const std::string& path) {
 void add_role(exr::Renderer& renderer, const std::string& name, const json& passes, const std::string& path) {
   const auto* const role = std::find_if(exr::role_table.begin(), exr::role_table.end(),
                                         [&](const exr::RoleInfo& info) { return info.name == name; });
-  if (role == exr::role_table.end()) refuse(path, "the role " + name, exr::role_names());
+  if (role == exr::role_table.end()) refuse(path, "the role " + exr::shown(name), exr::role_names());
   if (!passes.is_array()) {
     renderer.passes.push_back({role->role, names_of(passes, path)});
     return;
@@ -62,7 +63,7 @@ std::optional<exr::Renderer> read_renderer(const std::string& preset) {
     } else if (key == "roles" && value.is_object()) {
       for (const auto& [name, passes] : value.items()) add_role(renderer, name, passes, preset);
     } else {
-      refuse(preset, key + ": " + printed(value), wanted);
+      refuse(preset, exr::shown(key) + ": " + printed(value), wanted);
     }
   }
   if (renderer.passes.empty()) refuse(preset, "no roles", wanted);

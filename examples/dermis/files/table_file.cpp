@@ -9,12 +9,14 @@
 
 #include "arguments/number_argument.hpp"
 #include "dermis/error.hpp"
+#include "exr/message_text.hpp"
 #include "files/input_file.hpp"
 
 namespace dermis::program {
 namespace {
 
 constexpr std::size_t values_per_row = 4;
+constexpr std::size_t most_rows = 4096;  // a plan looks at all of them again and again
 constexpr std::array<const char*, values_per_row> column_names = {"r_mm", "R", "G", "B"};
 
 std::string_view trimmed(std::string_view text) {
@@ -49,6 +51,7 @@ class Reader {
       const std::string_view content = trimmed(std::string_view(line).substr(0, line.find('#')));
       if (content.empty()) continue;
       const auto blocks = blocks_of(content);
+      if (rows.size() == most_rows) fail("one more row", fmt::format("at most {} rows", most_rows));
       if (!first || !is_header(blocks)) rows.push_back(read_row(blocks, rows.empty() ? -1 : rows.back().r_mm));
       first = false;
     }
@@ -76,10 +79,9 @@ class Reader {
   }
 
   double read_number(const std::vector<std::string_view>& blocks, std::size_t column) const {
-    constexpr std::size_t shown = 80;  // characters of a block, for an error
     const auto number = parse_real(blocks[column]);
     if (!number || *number < 0 || *number > 1e100)
-      fail(fmt::format("{} = {}", column_names[column], blocks[column].substr(0, shown)), "a number from 0 to 1e100");
+      fail(fmt::format("{} = {}", column_names[column], exr::shown(blocks[column])), "a number from 0 to 1e100");
     return *number;
   }
 

@@ -2,30 +2,25 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <cstddef>
 #include <cstdio>
 #include <exception>
 #include <new>
 #include <optional>
 #include <utility>
 
+#include "exr/message_text.hpp"
 #include "files/pocl_cache.hpp"
 
 namespace dermis::program {
 namespace {
 
-/// Names of files and channels come from outside: nothing in them may break the line or steer the terminal.
-std::string one_line(std::string_view message) {
-  std::string line(message);
-  std::replace_if(
-      line.begin(), line.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, ' ');
-  return line;
-}
-
+/// Names of files and channels come from outside: nothing in them may break the line or steer the terminal. If nobody
+/// can be told, the work goes on.
 void print_line(std::string_view message) {
+  constexpr std::size_t longest = 8000;
   std::fflush(stdout);
-  // fmt::print would throw if nobody can be told.
-  std::fputs(fmt::format("dermis: {}\n", one_line(message)).c_str(), stderr);
+  std::fputs(fmt::format("dermis: {}\n", exr::escaped(message, longest)).c_str(), stderr);
 }
 
 /// A device that fails may do so because PoCL cannot keep what it compiles, which it does not say.
@@ -66,6 +61,8 @@ void Messages::warn(ErrorCode code, std::string_view subject, std::string_view t
 void Messages::progress(std::string_view text) const {
   if (!arguments_.quiet) print_line(text);
 }
+
+void print_warning(std::string_view text) { print_line(fmt::format("warning: {}", text)); }
 
 void print_error(std::string_view message) { print_line(fmt::format("error: {}", message)); }
 

@@ -54,6 +54,9 @@ class Messages {
   std::set<std::string> said_;
 };
 
+/// "dermis: warning: TEXT", of what no file is to blame for.
+void print_warning(std::string_view text);
+
 /// "dermis: error: MESSAGE", for a run that goes on to its end.
 void print_error(std::string_view message);
 

@@ -8,7 +8,6 @@
 #include <deque>
 
 #include "dermis/oracle/compare.hpp"
-#include "files/output_file.hpp"
 #include "files/picture_png.hpp"
 #include "report/gnuplot.hpp"
 
@@ -56,9 +55,9 @@ double relative_l2(int width, int height, const std::vector<float>& a, const std
   return oracle::compare(as_picture(width, height, a), as_picture(width, height, b), where).relative_l2;
 }
 
-std::string panel(const std::string& title, const std::filesystem::path& png) {
+std::string panel(const std::string& title, const FileInMemory& png) {
   return fmt::format("set title {} offset 0,-0.8\nplot {} binary filetype=png with rgbimage notitle\n",
-                     script_string(title), script_string(png.string()));
+                     script_string(title), script_string(png.name()));
 }
 
 FigureSize sheet_size(int width, int height, std::size_t columns) {
@@ -79,16 +78,11 @@ void draw_methods(std::string_view argument, const std::filesystem::path& path, 
   const auto percent_off = [&](const std::vector<float>& a, const std::vector<float>& b) {
     return 100 * relative_l2(width, height, a, b, where);
   };
-  std::deque<TemporaryFile> files;
-  const auto beside = [&]() -> TemporaryFile& {
-    return files.emplace_back(fmt::format("{}.{}", path.string(), files.size()), argument);
-  };
+  std::deque<FileInMemory> files;
   std::string upper;
   std::string lower;
   for (const MethodPicture& picture : pictures) {
-    TemporaryFile& beauty = beside();
-    write_srgb_png(beauty, width, height, picture.beauty);
-    upper += panel(picture.name, beauty.path());
+    upper += panel(picture.name, files.emplace_back(srgb_png(width, height, picture.beauty)));
     if (picture.scattered.empty()) {
       lower += "set multiplot next\n";
       continue;
@@ -98,9 +92,8 @@ void draw_methods(std::string_view argument, const std::filesystem::path& path, 
       numbers.push_back(fmt::format("{:.2f} % off the exact method", percent_off(picture.scattered, exact.scattered)));
     if (has_truth)
       numbers.push_back(fmt::format("{:.1f} % off the path tracer", percent_off(picture.beauty, truth.beauty)));
-    TemporaryFile& map = beside();
-    write_heatmap_png(map, width, height, error_map(picture.scattered, exact.scattered, where));
-    lower += panel(fmt::format("{}", fmt::join(numbers, ", ")), map.path());
+    const std::string map = heatmap_png(width, height, error_map(picture.scattered, exact.scattered, where));
+    lower += panel(fmt::format("{}", fmt::join(numbers, ", ")), files.emplace_back(map));
   }
   const std::string script = fmt::format(
       "unset tics\nunset border\nunset key\nset size ratio -1\nset margins 0.5,0.5,0.2,1.6\n"

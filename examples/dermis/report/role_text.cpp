@@ -6,6 +6,8 @@
 #include <string_view>
 #include <vector>
 
+#include "exr/message_text.hpp"
+
 namespace dermis::program {
 namespace {
 
@@ -31,7 +33,7 @@ bool is_perspective(const Camera& camera) { return camera.projection == Camera::
 std::string text_of(const exr::ChannelSum& channels) {
   if (channels.empty()) return "missing";
   std::vector<std::string> groups;
-  for (const auto& group : channels) groups.push_back(text_of_group(group));
+  for (const auto& group : channels) groups.push_back(exr::escaped(text_of_group(group)));
   return fmt::format("{}", fmt::join(groups, " + "));
 }
 
@@ -46,7 +48,7 @@ std::string text_of(const exr::FoundCamera& found) {
   const std::string depth =
       found.depth_type == exr::DepthType{} ? "" : fmt::format(", depth is {}", exr::text_of(found.depth_type));
   const std::string axis = found.axis && found.source != "position" ? ", depth is that of the positions" : "";
-  return fmt::format("{}, from {}{}{}", kind, found.source, residual, axis.empty() ? depth : axis);
+  return fmt::format("{}, from {}{}{}", kind, exr::escaped(found.source), residual, axis.empty() ? depth : axis);
 }
 
 json json_of(const exr::Roles& roles) {

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "dermis/version.hpp"
+#include "exr/message_text.hpp"
 #include "report/json_text.hpp"
 #include "report/role_text.hpp"
 #include "report/tile_map.hpp"
@@ -81,10 +82,10 @@ json times_of(const StatsReport& report) {
 
 std::string text_of(const MaterialReport& material) {
   std::string text = fmt::format("material {:<2} {}, {} pixels, radius {:.3g} mm\n",
-                                 material.name ? *material.name
+                                 material.name ? exr::escaped(*material.name)
                                  : material.id ? std::to_string(*material.id)
                                                : "",
-                                 material.profile, material.pixels, material.radius_mm);
+                                 exr::escaped(material.profile), material.pixels, material.radius_mm);
   if (!material.taps) return text;
   const auto& [design, count, predicted_rel_l2] = *material.taps;
   text += fmt::format("            {} rank {}, {}{} taps, placement {}", name_of(design.model), design.rank,
@@ -202,7 +203,7 @@ std::string text_of(const StatsReport& report) {
   text += counted("narrow", stats.channels_narrow, 3 * stats.pixels_scattered);
   for (std::size_t i = 0; i < report.views.size(); ++i) {
     const std::int64_t all = stats.views[i].seen + stats.views[i].hidden;
-    text += fmt::format("view        {}, {} pixels of surface\n", report.views[i], all);
+    text += fmt::format("view        {}, {} pixels of surface\n", exr::escaped(report.views[i]), all);
     text += counted("hidden", stats.views[i].hidden, all);
     text += counted("seen", stats.views[i].seen, all);
   }

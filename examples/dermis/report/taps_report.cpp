@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "exr/message_text.hpp"
 #include "report/json_text.hpp"
 
 namespace dermis::program {
@@ -19,7 +20,7 @@ std::string header_of(const TapsReport& report) {
   const auto add = [&](std::string_view name, const std::string& value) {
     text += fmt::format("{:<17}{}\n", name, value);
   };
-  add("profile", report.profile);
+  add("profile", exr::escaped(report.profile));
   if (report.width_follows_albedo) add("", "the albedo of each pixel scales it; this is its width at a factor of 1");
   add("model", std::string(name_of(report.design.model)));
   add("rank", std::to_string(set.terms.size()));
@@ -74,15 +75,15 @@ std::string json_text_of(const TapsReport& report) {
   const TapSet& set = report.set;
   json terms = json::array();
   for (const TapTerm& term : set.terms) terms.push_back({{"scale", term.scale}, {"weights", term.weights}});
-  return json_text({{"profile", report.profile},
-                    {"model", name_of(report.design.model)},
-                    {"rank", set.terms.size()},
-                    {"taps", set.offsets_px.size()},
-                    {"fetch", name_of(set.fetch)},
-                    {"pixel_mm", set.pixel_mm},
-                    {"predicted_rel_l2", set.predicted_rel_l2},
-                    {"offsets_px", set.offsets_px},
-                    {"terms", terms}});
+  return json_text(json{{"profile", report.profile},
+                        {"model", name_of(report.design.model)},
+                        {"rank", set.terms.size()},
+                        {"taps", set.offsets_px.size()},
+                        {"fetch", name_of(set.fetch)},
+                        {"pixel_mm", set.pixel_mm},
+                        {"predicted_rel_l2", set.predicted_rel_l2},
+                        {"offsets_px", set.offsets_px},
+                        {"terms", terms}});
 }
 
 std::string csv_of(const TapsReport& report) {

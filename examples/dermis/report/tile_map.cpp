@@ -55,8 +55,7 @@ std::string legend_of(const TileMap& tiles) {
   return text;
 }
 
-void write_tile_map_png(TemporaryFile& file, int width, int height, const TileMap& tiles,
-                        std::span<const float> light) {
+std::string tile_map_png(int width, int height, const TileMap& tiles, std::span<const float> light) {
   constexpr float darkest = 0.15F;
   std::vector<float> rgb;
   rgb.reserve(light.size());
@@ -69,7 +68,7 @@ void write_tile_map_png(TemporaryFile& file, int width, int height, const TileMa
       for (const float channel : look_of(tiles.kinds[tile]).rgb) rgb.push_back(shade * channel);
     }
   }
-  write_srgb_png(file, width, height, rgb);
+  return srgb_png(width, height, rgb);
 }
 
 }  // namespace dermis::program

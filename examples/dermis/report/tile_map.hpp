@@ -6,7 +6,6 @@
 #include <string_view>
 
 #include "dermis/plan.hpp"
-#include "files/output_file.hpp"
 
 namespace dermis::program {
 
@@ -16,8 +15,8 @@ std::string in_words(std::string_view name);
 /// A line per kind: its colour, how many tiles are of it, and their share.
 std::string legend_of(const TileMap& tiles);
 
-/// Draws every tile in the colour of its kind, over the light of the frame, packed scene-linear RGB, from dim where it
-/// is dark to full. Throws Error(output).
-void write_tile_map_png(TemporaryFile& file, int width, int height, const TileMap& tiles, std::span<const float> light);
+/// The PNG file of every tile in the colour of its kind, over the light of the frame, packed scene-linear RGB, from dim
+/// where it is dark to full. Throws Error(output).
+std::string tile_map_png(int width, int height, const TileMap& tiles, std::span<const float> light);
 
 }  // namespace dermis::program

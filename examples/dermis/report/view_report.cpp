@@ -20,11 +20,11 @@ struct ViewLook {
 
 /// People who do not see red and green apart can tell these apart. They begin anew for further views.
 constexpr std::array<ViewLook, 6> view_looks = {{{"orange", {1, 0.25F, 0}},
-                                            {"blue", {0, 0.15F, 1}},
-                                            {"yellow", {1, 0.85F, 0.05F}},
-                                            {"cyan", {0, 0.75F, 0.8F}},
-                                            {"violet", {0.5F, 0.05F, 0.8F}},
-                                            {"white", {1, 1, 1}}}};
+                                                 {"blue", {0, 0.15F, 1}},
+                                                 {"yellow", {1, 0.85F, 0.05F}},
+                                                 {"cyan", {0, 0.75F, 0.8F}},
+                                                 {"violet", {0.5F, 0.05F, 0.8F}},
+                                                 {"white", {1, 1, 1}}}};
 
 const ViewLook& view_look_of(std::size_t view) { return view_looks[view % view_looks.size()]; }
 
@@ -74,7 +74,7 @@ std::string legend_of(const ViewReport& report, const std::vector<std::string>& 
   return text;
 }
 
-void write_view_report_png(TemporaryFile& file, int width, int height, const ViewReport& report) {
+std::string view_report_png(int width, int height, const ViewReport& report) {
   constexpr float grey_share = 0.35F;  // of white, for the light that the views have not brought
   std::vector<float> rgb(report.light.size());
   for (std::size_t i = 0; i < rgb.size() / 3; ++i) {
@@ -91,7 +91,7 @@ void write_view_report_png(TemporaryFile& file, int width, int height, const Vie
     const float grey = light > 0 ? grey_share * std::min(light, 1.0F) : 0;
     for (std::size_t c = 0; c < 3; ++c) rgb[3 * i + c] = none * grey + (all > 0 ? (1 - none) * mixed[c] / all : 0);
   }
-  write_srgb_png(file, width, height, rgb);
+  return srgb_png(width, height, rgb);
 }
 
 }  // namespace dermis::program

@@ -7,7 +7,6 @@
 
 #include "dermis/frame.hpp"
 #include "dermis/plan.hpp"
-#include "files/output_file.hpp"
 
 namespace dermis::program {
 
@@ -22,8 +21,8 @@ ViewReport measure_views(const Plan& plan, const Frame& frame);
 /// A line for each view: its colour, and the pixels whose light it changes by a hundredth and more.
 std::string legend_of(const ViewReport& report, const std::vector<std::string>& names);
 
-/// Draws the scattered light in grey, and over it, the stronger the more the views bring, the colours of these by how
-/// much each brings. Throws Error(output).
-void write_view_report_png(TemporaryFile& file, int width, int height, const ViewReport& report);
+/// The PNG file of the scattered light in grey, and over it, the stronger the more the views bring, the colours of
+/// these by how much each brings. Throws Error(output).
+std::string view_report_png(int width, int height, const ViewReport& report);
 
 }  // namespace dermis::program
