@@ -121,14 +121,14 @@ void Shading::run(const ShadingFrame& frame) const {
     const cl::CommandQueue& queue = *borrowed;
     const ImageBuffers memory(context, frame.width, frame.height, images);
     check_outputs(memory, images, {{light, -1}, {seen, albedo}, {specular, -1}, {beauty, -1}});
-    const BoundLights lights(context, queue, state_->program, frame.lights);
+    const BoundLights lights(state_->device, queue, state_->program, frame.lights);
     const params::ShadingImages layouts = {memory.layout(position), memory.layout(normal), memory.layout(albedo),
                                            memory.layout(light),    memory.layout(seen),   memory.layout(specular),
                                            memory.layout(beauty)};
     const auto output = [&](Name name) { return memory.buffer(memory.has(name) ? name : position); };
-    run_per_pixel(queue, state_->program, "shade", frame.width, frame.height, layouts, params, memory.buffer(position),
-                  memory.buffer(normal), memory.buffer(albedo), output(light), output(seen), output(specular),
-                  output(beauty), lights.lights(), lights.maps(), state_->tables, state_->reflected);
+    run_per_pixel(state_->device, queue, state_->program, "shade", frame.width, frame.height, layouts, params,
+                  memory.buffer(position), memory.buffer(normal), memory.buffer(albedo), output(light), output(seen),
+                  output(specular), output(beauty), lights.lights(), lights.maps(), state_->tables, state_->reflected);
     queue.finish();
     memory.read_back(queue);
   });

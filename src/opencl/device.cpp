@@ -7,33 +7,21 @@
 #include <mutex>
 #include <utility>
 
+#include "opencl/kernel_shape.hpp"
+
 namespace dermis {
 
 namespace {
-
-std::string type_name(cl_device_type type) {
-  if (type & CL_DEVICE_TYPE_CPU) return "CPU";
-  if (type & CL_DEVICE_TYPE_GPU) return "GPU";
-  if (type & CL_DEVICE_TYPE_ACCELERATOR) return "accelerator";
-  return "other";
-}
-
-/// Lanes that suit the device, of the widths that the kernels know. Processors with vectors of 8 floats are faster by
-/// 16, two vectors at a time: they take 0.80 to 0.93 of the time for passes over surfaces, and 0.86 to 1 for textures
-/// (AVX2, measured).
-int kernel_vector_width(const cl::Device& device) {
-  const auto native = static_cast<int>(device.getInfo<CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT>());
-  return native >= 8 ? 16 : native >= 4 ? 4 : 1;
-}
 
 DeviceInfo describe(const cl::Device& device) {
   DeviceInfo info;
   info.name = device.getInfo<CL_DEVICE_NAME>();
   info.platform = cl::Platform(device.getInfo<CL_DEVICE_PLATFORM>()).getInfo<CL_PLATFORM_NAME>();
   info.driver = device.getInfo<CL_DRIVER_VERSION>();
-  info.type = type_name(device.getInfo<CL_DEVICE_TYPE>());
+  const KernelShape shape = kernel_shape(device);
+  info.type = shape.type;
+  info.vector_width = shape.vector_width;
   info.compute_units = static_cast<int>(device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>());
-  info.vector_width = kernel_vector_width(device);
   info.memory_bytes = device.getInfo<CL_DEVICE_GLOBAL_MEM_SIZE>();
   info.max_buffer_bytes = device.getInfo<CL_DEVICE_MAX_MEM_ALLOC_SIZE>();
   return info;

@@ -18,4 +18,7 @@ struct Device::State {
 /// that a GPU gets can be tested on a CPU.
 Device with_kernel_shape(const Device& device, int vector_width, std::string_view type);
 
+/// Whether a work-item computes one pixel, as on GPUs; else runs of pixels.
+inline bool item_is_pixel(const Device& device) { return device.info().type == "GPU"; }
+
 }  // namespace dermis

@@ -144,10 +144,10 @@ TextureStats TextureBlur::scatter(TextureRun& run) const {
 void TextureBlur::find_runs(TextureRun& run, const BlurMemory& memory) const {
   cl::Kernel rows(passes_, "texture_runs_u");
   set_arguments(rows, run.params(), memory.planes.objects, memory.along_u.before, memory.along_u.after);
-  run.launch(TextureRun::Step::prepare, rows, run.sizes().height);
+  run.launch_lines(TextureRun::Step::prepare, rows, run.sizes().height);
   cl::Kernel columns(passes_, "texture_runs_v");
   set_arguments(columns, run.params(), memory.planes.objects, memory.along_v.before, memory.along_v.after);
-  run.launch(TextureRun::Step::prepare, columns, parts_of(run.sizes().width, vector_width_));
+  run.launch_lines(TextureRun::Step::prepare, columns, parts_of(run.sizes().width, vector_width_));
 }
 
 void TextureBlur::blur(TextureRun& run, const BlurMemory& memory) const {

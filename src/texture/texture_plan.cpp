@@ -52,7 +52,7 @@ TextureStats TexturePlan::run(const TextureFrame& frame) const {
     const BorrowedQueue queue(state_->device);
     const TextureBuffers buffers(context, frame, images);
     const TextureScatter& method = *state_->method;
-    TextureRun run(*queue, method.image_program(), frame, buffers, state_->options.albedo_mix);
+    TextureRun run(state_->device, *queue, method.image_program(), frame, buffers, state_->options.albedo_mix);
     TextureStats stats = method.scatter(run);
     stats.total_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
     return stats;

@@ -73,7 +73,7 @@ class TextureRecursion final : public TextureScatter {
       : TextureScatter(device, images, true),
         recursion_(make_recursion(profile)),
         passes_(build_passes(device, images, "texture/recursion.cl", "")),
-        lines_per_item_(device.info().type == "GPU" ? 1 : 8) {}
+        lines_per_item_(item_is_pixel(device) ? 1 : 8) {}
 
   double predicted_rel_l2() const override { return recursion_.predicted_rel_l2; }
   TextureStats scatter(TextureRun& run) const override;
@@ -99,7 +99,7 @@ TextureStats TextureRecursion::scatter(TextureRun& run) const {
     set_arguments(kernel, run.params(), pass, poles, run.stretch(along_v),
                   along_v ? memory.between : memory.planes.light, along_v ? memory.planes.light : memory.between,
                   memory.planes.counters);
-    run.launch(TextureRun::Step::scatter, kernel, parts_of(lines, lines_per_item_));
+    run.launch_lines(TextureRun::Step::scatter, kernel, parts_of(lines, lines_per_item_));
     run.count_parts(lines);
   }
   run.finish(memory.planes.light);

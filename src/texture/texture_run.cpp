@@ -41,9 +41,10 @@ TexturePlanes::TexturePlanes(const cl::Context& context, const TextureSizes& siz
       finest(device_buffer(context, 2 * sizes.blocks() * sizeof(float))),
       counters(device_buffer(context, TEXTURE_COUNTERS * sizeof(cl_int))) {}
 
-TextureRun::TextureRun(const cl::CommandQueue& queue, const cl::Program& image_program, const TextureFrame& frame,
-                       const TextureBuffers& images, double albedo_mix)
-    : queue_(queue),
+TextureRun::TextureRun(const Device& device, const cl::CommandQueue& queue, const cl::Program& image_program,
+                       const TextureFrame& frame, const TextureBuffers& images, double albedo_mix)
+    : device_(device),
+      queue_(queue),
       context_(queue.getInfo<CL_QUEUE_CONTEXT>()),
       image_program_(image_program),
       images_(images),
@@ -63,10 +64,13 @@ const cl::Buffer& TextureRun::stretch(bool along_v) const {
   return images_.buffer(along_v ? TextureImage::stretch_v : TextureImage::stretch_u);
 }
 
-void TextureRun::launch(Step step, cl::Kernel& kernel, int columns, int rows) {
-  cl::Event event;
-  queue_.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(columns, rows), cl::NDRange(1, 1), nullptr, &event);
-  events_[static_cast<std::size_t>(step)].push_back(event);
+void TextureRun::launch(Step step, const cl::Kernel& kernel, const Grid& grid) {
+  events_[static_cast<std::size_t>(step)].push_back(enqueue(queue_, kernel, grid));
+}
+
+void TextureRun::launch_blocks(Step step, const cl::Kernel& kernel) {
+  const int items = item_is_pixel(device_) ? BLOCK_WIDTH : 1;
+  launch(step, kernel, {items * params_.blocks_x, params_.blocks_y, items, 1});
 }
 
 void TextureRun::prepare(const TexturePlanes& planes) {
