@@ -123,10 +123,9 @@ void Translucency::run(const TranslucencyFrame& frame) const {
   const Images images = check_images(frame, state_->description);
   make_light_params(frame.lights);  // throws if one is wrong, before anything is done
   with_device_errors([&] {
-    const cl::Context context(state_->device.context(), true);
     const BorrowedQueue borrowed(state_->device);
     const cl::CommandQueue& queue = *borrowed;
-    const ImageBuffers memory(context, frame.width, frame.height, images);
+    const ImageBuffers memory(state_->device, queue, frame.width, frame.height, images);
     check_outputs(memory, images, {{lit, light}, {result, beauty}});
     const BoundLights lights(state_->device, queue, state_->program, frame.lights);
     const params::TranslucencyImages layouts = {
@@ -142,7 +141,7 @@ void Translucency::run(const TranslucencyFrame& frame) const {
                   buffer(thickness), buffer(beauty), buffer(lit), buffer(result), lights.lights(), lights.maps(),
                   state_->slabs, state_->tables);
     queue.finish();
-    memory.read_back(queue);
+    memory.read_back();
   });
 }
 

@@ -7,7 +7,7 @@
 #include <mutex>
 #include <utility>
 
-#include "opencl/kernel_shape.hpp"
+#include "opencl/device_shape.hpp"
 
 namespace dermis {
 
@@ -18,7 +18,7 @@ DeviceInfo describe(const cl::Device& device) {
   info.name = device.getInfo<CL_DEVICE_NAME>();
   info.platform = cl::Platform(device.getInfo<CL_DEVICE_PLATFORM>()).getInfo<CL_PLATFORM_NAME>();
   info.driver = device.getInfo<CL_DRIVER_VERSION>();
-  const KernelShape shape = kernel_shape(device);
+  const DeviceShape shape = device_shape(device);
   info.type = shape.type;
   info.vector_width = shape.vector_width;
   info.compute_units = static_cast<int>(device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>());
@@ -55,7 +55,7 @@ std::string lower(std::string_view text) {
 }
 
 bool matches(const cl::Device& device, std::size_t number, const std::string& name) {
-  if (name.empty() || name == std::to_string(number)) return true;
+  if (name == std::to_string(number)) return true;
   const bool is_number = std::all_of(name.begin(), name.end(), [](unsigned char c) { return std::isdigit(c) != 0; });
   if (is_number) return false;
   const DeviceInfo info = describe(device);
@@ -67,6 +67,11 @@ cl::Device find_device(const std::string& name) {
   const std::vector<cl::Device> devices = all_devices();
   if (devices.empty()) {
     throw Error(ErrorCode::device, "device", "no OpenCL device", "an OpenCL driver, for instance pocl-opencl-icd");
+  }
+  if (name.empty()) {
+    std::vector<DeviceInfo> infos;
+    for (const cl::Device& device : devices) infos.push_back(describe(device));
+    return devices[preferred_device(infos)];
   }
   std::string names;
   for (std::size_t i = 0; i < devices.size(); ++i) {
@@ -122,7 +127,8 @@ Device Device::open(std::string_view name, int threads) {
     cl::Device device = find_device(wanted);
     if (threads != 0) device = with_threads(device, threads);
     Device result;
-    result.state_ = std::make_shared<State>(State{device, cl::Context(device), describe(device)});
+    result.state_ = std::make_shared<State>(
+        State{device, cl::Context(device), describe(device), device_shape(device).shares_host_memory});
     return result;
   });
 }
@@ -139,7 +145,8 @@ Device Device::adopt(cl_context context, cl_device_id device) {
       throw Error(ErrorCode::usage, "device", "a device of another context", "a device of the context");
     }
     Device result;
-    result.state_ = std::make_shared<State>(State{adopted, its_context, describe(adopted)});
+    result.state_ = std::make_shared<State>(
+        State{adopted, its_context, describe(adopted), device_shape(adopted).shares_host_memory});
     return result;
   });
 }
@@ -148,9 +155,26 @@ Device with_kernel_shape(const Device& device, int vector_width, std::string_vie
   Device::State state = *device.state_;
   state.info.vector_width = vector_width;
   state.info.type = type;
+  state.shares_host_memory = type != "GPU";
   Device result;
   result.state_ = std::make_shared<Device::State>(state);
   return result;
+}
+
+Device with_largest_buffer(const Device& device, std::uint64_t bytes) {
+  Device::State state = *device.state_;
+  state.info.max_buffer_bytes = bytes;
+  Device result;
+  result.state_ = std::make_shared<Device::State>(state);
+  return result;
+}
+
+bool shares_host_memory(const Device& device) { return device.state_->shares_host_memory; }
+
+std::size_t preferred_device(std::span<const DeviceInfo> devices) {
+  const auto gpu =
+      std::find_if(devices.begin(), devices.end(), [](const DeviceInfo& its) { return its.type == "GPU"; });
+  return gpu == devices.end() ? 0 : static_cast<std::size_t>(gpu - devices.begin());
 }
 
 DeviceCache& cache_of(const Device& device) { return *device.state_->cache; }

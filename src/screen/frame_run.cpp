@@ -78,7 +78,7 @@ FrameRun::FrameRun(const Plan::State& plan, const Frame& frame, const BoundImage
       reuse_(plan.method->by_tiles() ? reuse : nullptr),
       flags_(run_flags(plan, frame, images, reuse_ != nullptr, reuse_ != nullptr && reuse_->continues(plan, frame))) {
   for (const cl_event event : wait_for) last_.emplace_back(event, true);
-  if (flags_.defers != 0 && reuse_ == nullptr) memory.need_deferred(context_);
+  if (flags_.defers != 0 && reuse_ == nullptr) memory.need_deferred(plan.settings.device);
   deferred_ = reuse_ != nullptr ? reuse_->deferred : flags_.defers != 0 ? memory.deferred : memory.material_ids;
 }
 
@@ -166,7 +166,7 @@ std::vector<cl::Buffer> FrameRun::inputs(std::initializer_list<ImageName> names)
 
 void FrameRun::scatter(int step) {
   phase_ = &events_.scatter;
-  const int rows = plan_.method->rows_per_step(frame_.height);
+  const int rows = plan_.method->rows_per_step(size());
   plan_.method->scatter(*this, {step * rows, std::min(rows, frame_.height - step * rows)});
 }
 

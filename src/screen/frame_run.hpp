@@ -30,7 +30,7 @@ class FrameRun {
 
   void classify();
   /// The number of steps that `scatter` is cut into.
-  int scatter_steps() const { return parts_of(frame_.height, plan_.method->rows_per_step(frame_.height)); }
+  int scatter_steps() const { return parts_of(frame_.height, plan_.method->rows_per_step(size())); }
   void scatter(int step);
   /// Adds the light that enters where only the views of the frame look. Blocks.
   std::vector<ViewStats> add_hidden_light(const Frame& frame);
@@ -46,6 +46,7 @@ class FrameRun {
   void add_to(Stats& stats) const;
 
   // For methods.
+  const Device& device() const { return plan_.settings.device; }
   const cl::Context& context() const { return context_; }
   const cl::CommandQueue& queue() const { return queue_; }
   const cl::Program& program() const { return plan_.program; }

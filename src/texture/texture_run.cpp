@@ -2,6 +2,8 @@
 
 #include <limits>
 
+#include "opencl/device_buffer.hpp"
+
 namespace dermis {
 
 namespace {
@@ -33,13 +35,12 @@ int TextureSizes::blocks_y() const { return parts_of(height, BLOCK_HEIGHT); }
 std::size_t TextureSizes::texels() const { return static_cast<std::size_t>(stride()) * height; }
 std::size_t TextureSizes::blocks() const { return static_cast<std::size_t>(blocks_x()) * blocks_y(); }
 
-TexturePlanes::TexturePlanes(const cl::Context& context, const TextureSizes& sizes, int light_floats_per_texel,
-                             int lit_parts)
-    : light(device_buffer(context, light_floats_per_texel * sizes.texels() * sizeof(float))),
-      objects(device_buffer(context, sizes.texels())),
-      lit(device_buffer(context, 3 * lit_parts * sizes.blocks())),
-      finest(device_buffer(context, 2 * sizes.blocks() * sizeof(float))),
-      counters(device_buffer(context, TEXTURE_COUNTERS * sizeof(cl_int))) {}
+TexturePlanes::TexturePlanes(const Device& device, const TextureSizes& sizes, int light_floats_per_texel, int lit_parts)
+    : light(device_buffer(device, "light", light_floats_per_texel * sizes.texels() * sizeof(float))),
+      objects(device_buffer(device, "objects", sizes.texels())),
+      lit(device_buffer(device, "lit blocks", 3 * lit_parts * sizes.blocks())),
+      finest(device_buffer(device, "finest stretches", 2 * sizes.blocks() * sizeof(float))),
+      counters(device_buffer(device, "counters", TEXTURE_COUNTERS * sizeof(cl_int))) {}
 
 TextureRun::TextureRun(const Device& device, const cl::CommandQueue& queue, const cl::Program& image_program,
                        const TextureFrame& frame, const TextureBuffers& images, double albedo_mix)
@@ -95,7 +96,7 @@ void TextureRun::finish(const cl::Buffer& scattered) {
 }
 
 TextureStats TextureRun::wait(const TexturePlanes& planes) const {
-  images_.read_back(queue_);
+  images_.read_back();
   std::array<cl_int, TEXTURE_COUNTERS> counters{};
   queue_.enqueueReadBuffer(planes.counters, CL_TRUE, 0, sizeof(counters), counters.data());
   TextureStats stats;

@@ -32,12 +32,8 @@ struct TexturePlanes {
   cl::Buffer finest;
   cl::Buffer counters;
 
-  TexturePlanes(const cl::Context& context, const TextureSizes& sizes, int light_floats_per_texel, int lit_parts);
+  TexturePlanes(const Device& device, const TextureSizes& sizes, int light_floats_per_texel, int lit_parts);
 };
-
-inline cl::Buffer device_buffer(const cl::Context& context, std::size_t bytes) {
-  return {context, CL_MEM_READ_WRITE, bytes};
-}
 
 inline int parts_of(int whole, int part) { return (whole + part - 1) / part; }
 
@@ -51,6 +47,7 @@ class TextureRun {
   TextureRun(const Device& device, const cl::CommandQueue& queue, const cl::Program& image_program,
              const TextureFrame& frame, const TextureBuffers& images, double albedo_mix);
 
+  const Device& device() const { return device_; }
   const cl::Context& context() const { return context_; }
   const cl::CommandQueue& queue() const { return queue_; }
   const TextureSizes& sizes() const { return sizes_; }

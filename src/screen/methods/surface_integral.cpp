@@ -20,7 +20,7 @@ class SurfaceIntegral final : public ScatterMethod {
     return {{"frame/prepare.cl", "integral/exact.cl"}, profile_table_constant()};
   }
 
-  int rows_per_step(int) const override { return 16; }
+  int rows_per_step(const FrameSize& frame) const override { return rows_at_once(frame); }
 
   void upload(const cl::Context& context, const MaterialTables&) override {
     profiles_.upload(context, settings_.materials);

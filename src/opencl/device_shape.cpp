@@ -1,4 +1,4 @@
-#include "opencl/kernel_shape.hpp"
+#include "opencl/device_shape.hpp"
 
 namespace dermis {
 
@@ -21,9 +21,10 @@ int vector_width(const cl::Device& device) {
 
 }  // namespace
 
-KernelShape kernel_shape(const cl::Device& device) {
+DeviceShape device_shape(const cl::Device& device) {
   const cl_device_type type = device.getInfo<CL_DEVICE_TYPE>();
-  return {type_name(type), (type & CL_DEVICE_TYPE_GPU) != 0 ? 1 : vector_width(device)};
+  return {type_name(type), (type & CL_DEVICE_TYPE_GPU) != 0 ? 1 : vector_width(device),
+          (type & CL_DEVICE_TYPE_CPU) != 0 || device.getInfo<CL_DEVICE_HOST_UNIFIED_MEMORY>() == CL_TRUE};
 }
 
 }  // namespace dermis
