@@ -3,7 +3,7 @@
 #ifndef DERMIS_PARAMS_H
 #define DERMIS_PARAMS_H
 
-#ifdef __OPENCL_VERSION__
+#ifdef __OPENCL_C_VERSION__
 typedef long Bytes;
 #else
 typedef long long Bytes;

@@ -33,7 +33,8 @@ class Device {
   static std::vector<DeviceInfo> list();
 
   /// Opens a device: `name` is a number from `list`, a type ("CPU") or a part of a name or platform, in any case; if
-  /// empty, the environment variable DERMIS_DEVICE says the same; if that is empty too, the first device. `threads` > 0
+  /// empty, the environment variable DERMIS_DEVICE says the same; if that is empty too, the first GPU, or the
+  /// first device if there is none. `threads` > 0
   /// uses only that many compute units of a CPU device. Throws Error(device) if there is no such device, Error(usage)
   /// if `threads` is out of range.
   static Device open(std::string_view name = {}, int threads = 0);
@@ -49,6 +50,8 @@ class Device {
   struct State;
   friend struct DeviceCache& cache_of(const Device& device);
   friend Device with_kernel_shape(const Device& device, int vector_width, std::string_view type);
+  friend Device with_largest_buffer(const Device& device, std::uint64_t bytes);
+  friend bool shares_host_memory(const Device& device);
   Device() = default;
   std::shared_ptr<const State> state_;
 };

@@ -18,8 +18,13 @@
 #define FORCED_INLINE static inline  // checkers of unoptimised kernels trip over what inlining leaves behind
 #endif
 
-// Such a function is called from several places: code that exists once is built sooner.
+// Such a function is called from several places: code that exists once is built sooner. On GPUs, which have scalars, a
+// call would keep the structs that it hands over in memory.
+#if V == 1
+#define SHARED FORCED_INLINE
+#else
 #define SHARED static __attribute__((noinline))
+#endif
 
 #define JOIN_(a, b) a##b
 #define JOIN(a, b) JOIN_(a, b)

@@ -99,9 +99,9 @@ static inline RgbRow rgb_row_of(global const uchar* image, const struct ImagePar
   return row;
 }
 
-// Fetches pixel x of a row into the caches.
+// Fetches pixel x of a row into the caches of a CPU. SPIR-V has no such instruction.
 FORCED_INLINE void fetch_ahead(global const uchar* row, int pixel_stride, int x) {
-#if defined(__OPTIMIZE__) && __has_builtin(__builtin_prefetch)
+#if V > 1 && defined(__OPTIMIZE__) && !defined(__SPIR__) && __has_builtin(__builtin_prefetch)
   __builtin_prefetch(row + x * (Bytes)pixel_stride);
 #endif
 }

@@ -79,6 +79,7 @@ kernel void halve_texels(struct FrameParams f, struct TexelLevels levels, int le
 kernel void light_blocks(struct FrameParams f, global const struct TexelParams* texels, global uchar* lit) {
   const int block_x = get_global_id(0);
   const int block_y = get_global_id(1);
+  if (block_x >= f.blocks_x) return;
   int any = 0;
   for (int y = block_y * BLOCK; y < min(block_y * BLOCK + BLOCK, f.height); ++y) {
     for (int x = block_x * BLOCK; x < min(block_x * BLOCK + BLOCK, f.width); ++x) {
@@ -100,6 +101,7 @@ kernel void dark_blocks(struct FrameParams f, global const struct DiscParams* di
                         global const struct BlockParams* blocks, global uchar* lit) {
   const int block_x = get_global_id(0);
   const int block_y = get_global_id(1);
+  if (block_x >= f.blocks_x) return;
   global const struct BlockParams* block = blocks + block_y * f.blocks_x + block_x;
   float reach_mm = 0.0f;
   for (int m = 0; m < MATERIALS; ++m) {

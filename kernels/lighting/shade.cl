@@ -45,6 +45,7 @@ kernel void shade(struct ShadingImages at, struct ShadingParams p, global const 
                   global const float* maps, global const float4* tables, global const float* reflected) {
   const int x = get_global_id(0);
   const int y = get_global_id(1);
+  if (x >= p.width) return;
   const Surface s =
       surface_of(&p, read_vector(position, &at.position, p.width, x, y), read_vector(normal, &at.normal, p.width, x, y),
                  read_vector(albedo, &at.albedo, p.width, x, y));

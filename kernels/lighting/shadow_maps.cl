@@ -6,5 +6,6 @@ kernel void gather_map(global const uchar* map, struct ImageParams map_at, int w
                        int first_texel) {
   const int x = get_global_id(0);
   const int y = get_global_id(1);
+  if (x >= width) return;
   maps[first_texel + y * width + x] = read_value(map, &map_at, width, x, y);
 }

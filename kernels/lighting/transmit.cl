@@ -119,6 +119,7 @@ kernel void transmit(struct TranslucencyImages at, struct TranslucencyParams p, 
   const Images in = {albedo, position, normal, mask, thickness};
   const int x = get_global_id(0);
   const int y = get_global_id(1);
+  if (x >= p.width) return;
   const RgbRow light_row = rgb_row_of(light, &at.light, p.width, y);
   const vrgb before = read_rgb(&light_row, x);
   vrgb more = broadcast_rgb(0.0f);

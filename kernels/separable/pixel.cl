@@ -9,6 +9,7 @@ kernel void segments(struct FrameParams f, struct FrameLayouts layouts, global c
   const Window w = window_in(&window, memory);
   const int x = get_global_id(0);
   const int y = get_global_id(1);
+  if (x >= f.width) return;
   const size_t at = pixel_at(&w, x, y);
   vfloat share = (vfloat)(1.0f);
 #if HAS_MATTE
@@ -23,6 +24,7 @@ kernel void shears(struct FrameParams f, struct WindowParams window, global ucha
   const Window w = window_in(&window, memory);
   const int first = get_global_id(0) * BLOCK;
   const int y = get_global_id(1);
+  if (first >= f.width) return;
   RunShears shears;
   for (int i = 0; i < BLOCK; ++i) {
     const Segment segment = segment_at(&f, &w, first + i, y, 1);
@@ -40,6 +42,7 @@ kernel void scatter_x(struct FrameParams f, struct WindowParams window, global u
   const Pass pass = pass_from(&w, 0, 0);
   const int x = get_global_id(0);
   const int y = get_global_id(1);
+  if (x >= f.width) return;
   vrgb result[TERMS];
   scatter_pixels(result, &f, &pass, &tables, x, y);
   for (int t = 0; t < TERMS; ++t) store_rgb(between + 3 * t * w.plane, w.plane, pixel_at(&w, x, y), result[t]);
@@ -57,6 +60,7 @@ kernel void scatter_y(struct FrameParams f, struct WindowParams window, global u
   const Pass pass = pass_from(&w, 1, 0);
   const int x = get_global_id(0);
   const int y = get_global_id(1);
+  if (x >= f.width) return;
   vrgb result[TERMS];
   scatter_pixels(result, &f, &pass, &tables, x, y);
   store_deferred(&f, deferred, x, y, result[0]);

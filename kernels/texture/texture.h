@@ -56,18 +56,30 @@ static inline size_t plane_of(const struct TextureParams* t) { return (size_t)t-
 
 static inline size_t texel_at(const struct TextureParams* t, int x, int y) { return (size_t)y * t->stride + x; }
 
-// The block of a work-item.
+// The block of a work-group, whose items take V of its columns in turn: on CPUs one item takes all.
 typedef struct {
   int index;
-  int x_begin, x_end, y_begin, y_end;  // texels
+  int x, y;                            // of the block among blocks
+  int x_begin, x_end, y_begin, y_end;  // texels; x_begin is the item's first one
+  int x_step;
+  int size;  // texels of the whole block
 } Block;
 
 static inline Block its_block(const struct TextureParams* t) {
-  const int x = get_global_id(0) * BLOCK_WIDTH;
-  const int y = get_global_id(1) * BLOCK_HEIGHT;
-  const Block block = {get_global_id(1) * t->blocks_x + get_global_id(0), x, min(x + BLOCK_WIDTH, t->width), y,
-                       min(y + BLOCK_HEIGHT, t->height)};
+  const int block_x = get_group_id(0);
+  const int block_y = get_group_id(1);
+  const int x = block_x * BLOCK_WIDTH;
+  const int y = block_y * BLOCK_HEIGHT;
+  const int x_end = min(x + BLOCK_WIDTH, t->width);
+  const int y_end = min(y + BLOCK_HEIGHT, t->height);
+  const int own = get_local_id(0) * V;
+  const Block block = {
+      block_y * t->blocks_x + block_x, block_x, block_y, x + own, x_end, y, y_end, get_local_size(0) * V,
+      (x_end - x) * (y_end - y)};
   return block;
 }
+
+// Whether a work-item speaks for its group.
+static inline int is_first_item(void) { return get_local_id(0) == 0; }
 
 static inline int blocks_of(const struct TextureParams* t) { return t->blocks_x * t->blocks_y; }

@@ -1,12 +1,14 @@
 // The chain of Gaussians: GaussianChain of texture.hpp. A work-item of texture_runs_u has a row, of texture_runs_v V
-// columns, of texture_blur a block.
+// columns; a work-group of texture_blur has a block.
 #pragma OPENCL FP_CONTRACT OFF
 #include "base/exponential.h"
 #include "texture/texture.h"
 
 // Writes how many texels of its run lie before and after each texel; -1 for an empty one.
 kernel void texture_runs_u(struct TextureParams t, global const uchar* objects, global int* before, global int* after) {
-  const size_t row = texel_at(&t, 0, get_global_id(0));
+  const int y = get_global_id(0);
+  if (y >= t.height) return;
+  const size_t row = texel_at(&t, 0, y);
   const int x_end = (t.width + V - 1) / V * V;  // lanes beyond the edge are empty
   int count = -1;
   for (int x = 0; x < x_end; ++x) {
@@ -28,6 +30,7 @@ static inline void store_ints(global int* p, vint value) { *(global vint*)p = va
 
 kernel void texture_runs_v(struct TextureParams t, global const uchar* objects, global int* before, global int* after) {
   const int x = get_global_id(0) * V;
+  if (x >= t.width) return;
   vint count = (vint)(-1);
   for (int y = 0; y < t.height; ++y) {
     const size_t at = texel_at(&t, x, y);
@@ -195,18 +198,18 @@ static inline vfloat blurred(const struct BlurParams* blur, global const float* 
 #endif
 
 // Whether a block within reach of a blur has light, by a part of the buffer of what is lit. `finest`: mm, of the block.
-static int is_lit(const struct TextureParams* t, const struct BlurParams* blur, global const uchar* lit, float finest,
-                  int along_v) {
+static int is_lit(const struct TextureParams* t, const struct BlurParams* blur, const Block* own,
+                  global const uchar* lit, float finest, int along_v) {
   const float deviation = blur->from_light ? blur->total_deviation_mm : blur->deviation_mm;
   // Rounded up to a step, which is no more than the spacing, or a texel.
   const int reach = (int)((REACH + 1.0f) * fmin(deviation / finest, MOST_TEXELS)) + 2;
-  const int block = get_global_id(along_v);
+  const int block = along_v ? own->y : own->x;
   const int size = along_v ? BLOCK_HEIGHT : BLOCK_WIDTH;
   const int blocks = along_v ? t->blocks_y : t->blocks_x;
   const int first = max(0, block - (reach + size - 1) / size);
   const int last = min(blocks - 1, block + (reach + size - 1) / size);
   for (int b = first; b <= last; ++b) {
-    const int at = along_v ? b * t->blocks_x + get_global_id(0) : get_global_id(1) * t->blocks_x + b;
+    const int at = along_v ? b * t->blocks_x + own->x : own->y * t->blocks_x + b;
     if (lit[at] == LIT_BRIGHT) return 1;
   }
   return 0;
@@ -221,7 +224,7 @@ kernel void texture_blur(struct TextureParams t, struct TexturePass pass, global
                          global int* counters) {
   const Block block = its_block(&t);
   if (lit[block.index] == LIT_EMPTY) {  // of the light, whose part is the first
-    atomic_inc(counters + COUNTER_EMPTY_PARTS);
+    if (is_first_item()) atomic_inc(counters + COUNTER_EMPTY_PARTS);
     return;
   }
   const size_t plane = plane_of(&t);
@@ -238,11 +241,11 @@ kernel void texture_blur(struct TextureParams t, struct TexturePass pass, global
     const int to = pass.along_v ? PLANE_LAST : PLANE_BETWEEN;
     global const float* source = (from == PLANE_BETWEEN ? between : from == PLANE_LIGHT ? light : last) + c * plane;
     global float* target = (to == PLANE_LAST ? last : between) + c * plane;
-    const int has_light = is_lit(&t, &blur, lit + (3 * from + c) * blocks, finest[block.index], pass.along_v);
-    lit[(3 * to + c) * blocks + block.index] = has_light ? LIT_BRIGHT : LIT_DARK;
+    const int has_light = is_lit(&t, &blur, &block, lit + (3 * from + c) * blocks, finest[block.index], pass.along_v);
+    if (is_first_item()) lit[(3 * to + c) * blocks + block.index] = has_light ? LIT_BRIGHT : LIT_DARK;
     any_lit |= has_light;
     for (int y = block.y_begin; y < block.y_end; ++y) {
-      for (int x = block.x_begin; x < block.x_end; x += V) {
+      for (int x = block.x_begin; x < block.x_end; x += block.x_step) {
         const size_t at = texel_at(&t, x, y);
         vfloat value = (vfloat)(0.0f);
         if (has_light) {
@@ -264,5 +267,5 @@ kernel void texture_blur(struct TextureParams t, struct TexturePass pass, global
       }
     }
   }
-  if (!any_lit) atomic_inc(counters + COUNTER_UNLIT_PARTS);
+  if (!any_lit && is_first_item()) atomic_inc(counters + COUNTER_UNLIT_PARTS);
 }

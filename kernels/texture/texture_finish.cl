@@ -1,4 +1,4 @@
-// texture_finish writes the light after scattering into the caller's outputs. A work-item has a block.
+// texture_finish writes the light after scattering into the caller's outputs. A work-group has a block.
 #pragma OPENCL FP_CONTRACT OFF
 #include "texture/texture.h"
 
@@ -27,7 +27,7 @@ kernel void texture_finish(struct TextureParams t, struct TextureLayouts layouts
   const TextureImages in = {light, albedo, mask, stretch_u, stretch_v, layouts};
   const Block block = its_block(&t);
   for (int y = block.y_begin; y < block.y_end; ++y) {
-    for (int x = block.x_begin; x < block.x_end; x += V) {
+    for (int x = block.x_begin; x < block.x_end; x += block.x_step) {
       const Texels texels = read_texels(&t, &in, x, y);
       const vint empty = AS_MASK(x + int_lane_numbers() < (vint)(t.width)) & ~texels.object;
       const vrgb value = load_scattered(sum, plane_of(&t), texel_at(&t, x, y));

@@ -1,4 +1,4 @@
-// texture_prepare makes what the passes read of the caller's images. A work-item has a block.
+// texture_prepare makes what the passes read of the caller's images. A work-group has a block.
 #pragma OPENCL FP_CONTRACT OFF
 #include "texture/texture.h"
 
@@ -23,6 +23,20 @@ static inline void store_texels(global float* light, size_t plane, size_t at, co
 
 #endif
 
+// What work-items have found in their columns of a block.
+typedef struct {
+  int lit;    // a bit for each channel
+  int count;  // texels of objects
+  float finest_u, finest_v;
+} Found;
+
+static inline void join_found(local Found* a, local const Found* b) {
+  a->lit |= b->lit;
+  a->count += b->count;
+  a->finest_u = fmin(a->finest_u, b->finest_u);
+  a->finest_v = fmin(a->finest_v, b->finest_v);
+}
+
 static inline float lowest_of(vfloat v) {
   float lowest = INFINITY;
 #define LOWER(lane) lowest = fmin(lowest, LANE(v, lane));
@@ -37,6 +51,7 @@ kernel void texture_prepare(struct TextureParams t, struct TextureLayouts layout
                             global const uchar* albedo, global const uchar* mask, global const uchar* stretch_u,
                             global const uchar* stretch_v, global float* light_out, global uchar* objects,
                             global uchar* lit_out, global float* finest, global int* counters) {
+  local Found found[BLOCK_WIDTH];  // of each work-item
   const TextureImages in = {light, albedo, mask, stretch_u, stretch_v, layouts};
   const Block block = its_block(&t);
   vint lit[3] = {(vint)(0), (vint)(0), (vint)(0)};
@@ -44,7 +59,7 @@ kernel void texture_prepare(struct TextureParams t, struct TextureLayouts layout
   vfloat finest_u = (vfloat)(INFINITY);
   vfloat finest_v = (vfloat)(INFINITY);
   for (int y = block.y_begin; y < block.y_end; ++y) {
-    for (int x = block.x_begin; x < block.x_end; x += V) {
+    for (int x = block.x_begin; x < block.x_end; x += block.x_step) {
       const Texels texels = read_texels(&t, &in, x, y);
       const size_t at = texel_at(&t, x, y);
       store_texels(light_out, plane_of(&t), at, &texels);
@@ -57,19 +72,25 @@ kernel void texture_prepare(struct TextureParams t, struct TextureLayouts layout
       finest_v = fmin(finest_v, select((vfloat)(INFINITY), texels.stretch_v, texels.object));
     }
   }
-  int texel_count = 0;
-#define COUNT_LANE(lane) texel_count += LANE(count, lane);
+  const int item = get_local_id(0);
+  Found own = {0, 0, lowest_of(finest_u), lowest_of(finest_v)};
+  for (int c = 0; c < 3; ++c) own.lit |= any_bit(lit[c]) << c;
+#define COUNT_LANE(lane) own.count += LANE(count, lane);
   EACH_LANE(COUNT_LANE)
 #undef COUNT_LANE
+  found[item] = own;
+  for (int others = get_local_size(0) / 2; others > 0; others /= 2) {
+    barrier(CLK_LOCAL_MEM_FENCE);
+    if (item < others) join_found(found + item, found + item + others);
+  }
+  if (item > 0) return;
   const int blocks = blocks_of(&t);
   for (int c = 0; c < 3; ++c) {
-    lit_out[c * blocks + block.index] = any_bit(lit[c]) ? LIT_BRIGHT : texel_count > 0 ? LIT_DARK : LIT_EMPTY;
+    lit_out[c * blocks + block.index] = found->lit >> c & 1 ? LIT_BRIGHT : found->count > 0 ? LIT_DARK : LIT_EMPTY;
   }
-  const float lowest_u = lowest_of(finest_u);
-  const float lowest_v = lowest_of(finest_v);
-  finest[block.index] = lowest_u;
-  finest[blocks + block.index] = lowest_v;
-  atomic_min(counters + COUNTER_FINEST, as_int(fmin(lowest_u, lowest_v)));
-  const int empty = (block.x_end - block.x_begin) * (block.y_end - block.y_begin) - texel_count;
+  finest[block.index] = found->finest_u;
+  finest[blocks + block.index] = found->finest_v;
+  atomic_min(counters + COUNTER_FINEST, as_int(fmin(found->finest_u, found->finest_v)));
+  const int empty = block.size - found->count;
   if (empty > 0) atomic_add(counters + COUNTER_EMPTY_TEXELS, empty);
 }

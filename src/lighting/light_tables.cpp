@@ -9,6 +9,7 @@
 #include <numbers>
 #include <string>
 
+#include "opencl/device_buffer.hpp"
 #include "opencl/image_buffers.hpp"
 #include "opencl/pixel_stage.hpp"
 
@@ -204,20 +205,21 @@ std::vector<params::LightParams> make_light_params(std::span<const Light> lights
   return all;
 }
 
-BoundLights::BoundLights(const cl::Context& context, const cl::CommandQueue& queue, const cl::Program& program,
+BoundLights::BoundLights(const Device& device, const cl::CommandQueue& queue, const cl::Program& program,
                          std::span<const Light> lights) {
+  const cl::Context context(device.context(), true);
   const std::vector<params::LightParams> all = make_light_params(lights);
   std::size_t texels = 1;  // a buffer has at least one byte
   for (const params::LightParams& light : all) texels += std::size_t{1} * light.map_width * light.map_height;
   lights_ = upload_rows(context, all);
-  maps_ = cl::Buffer(context, CL_MEM_READ_WRITE, texels * sizeof(float));
+  maps_ = device_buffer(device, "shadow maps", texels * sizeof(float));
   for (std::size_t i = 0; i < lights.size(); ++i) {
     if (!lights[i].map.depth) continue;
     const CallerImage map = CheckedLight(lights[i], i).map();
-    const ImageBuffers memory(context, lights[i].map.width, lights[i].map.height, std::span(&map, 1));
+    const ImageBuffers memory(device, queue, lights[i].map.width, lights[i].map.height, std::span(&map, 1));
     const ShadowMap& its_map = lights[i].map;
-    run_per_pixel(queue, program, "gather_map", its_map.width, its_map.height, memory.buffer(0), memory.layout(0),
-                  its_map.width, maps_, all[i].first_texel);
+    run_per_pixel(device, queue, program, "gather_map", its_map.width, its_map.height, memory.buffer(0),
+                  memory.layout(0), its_map.width, maps_, all[i].first_texel);
     queue.finish();  // before the buffer over the caller's memory goes
   }
 }

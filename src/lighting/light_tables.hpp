@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "dermis/device.hpp"
 #include "dermis/lights.hpp"
 #include "opencl/opencl.hpp"
 #include "opencl/params.hpp"
@@ -18,7 +19,7 @@ class BoundLights {
  public:
   /// Puts the work of gathering maps on the queue. `program` has shadow_maps.cl. The maps of the caller are read until
   /// the queue is done with it.
-  BoundLights(const cl::Context& context, const cl::CommandQueue& queue, const cl::Program& program,
+  BoundLights(const Device& device, const cl::CommandQueue& queue, const cl::Program& program,
               std::span<const Light> lights);
 
   const cl::Buffer& lights() const { return lights_; }

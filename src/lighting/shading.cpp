@@ -116,21 +116,20 @@ void Shading::run(const ShadingFrame& frame) const {
   make_light_params(frame.lights);  // throws if one is wrong, before anything is done
   const params::ShadingParams params = state_->params_of(frame);
   with_device_errors([&] {
-    const cl::Context context(state_->device.context(), true);
     const BorrowedQueue borrowed(state_->device);
     const cl::CommandQueue& queue = *borrowed;
-    const ImageBuffers memory(context, frame.width, frame.height, images);
+    const ImageBuffers memory(state_->device, queue, frame.width, frame.height, images);
     check_outputs(memory, images, {{light, -1}, {seen, albedo}, {specular, -1}, {beauty, -1}});
-    const BoundLights lights(context, queue, state_->program, frame.lights);
+    const BoundLights lights(state_->device, queue, state_->program, frame.lights);
     const params::ShadingImages layouts = {memory.layout(position), memory.layout(normal), memory.layout(albedo),
                                            memory.layout(light),    memory.layout(seen),   memory.layout(specular),
                                            memory.layout(beauty)};
     const auto output = [&](Name name) { return memory.buffer(memory.has(name) ? name : position); };
-    run_per_pixel(queue, state_->program, "shade", frame.width, frame.height, layouts, params, memory.buffer(position),
-                  memory.buffer(normal), memory.buffer(albedo), output(light), output(seen), output(specular),
-                  output(beauty), lights.lights(), lights.maps(), state_->tables, state_->reflected);
+    run_per_pixel(state_->device, queue, state_->program, "shade", frame.width, frame.height, layouts, params,
+                  memory.buffer(position), memory.buffer(normal), memory.buffer(albedo), output(light), output(seen),
+                  output(specular), output(beauty), lights.lights(), lights.maps(), state_->tables, state_->reflected);
     queue.finish();
-    memory.read_back(queue);
+    memory.read_back();
   });
 }
 

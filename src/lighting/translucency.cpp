@@ -123,12 +123,11 @@ void Translucency::run(const TranslucencyFrame& frame) const {
   const Images images = check_images(frame, state_->description);
   make_light_params(frame.lights);  // throws if one is wrong, before anything is done
   with_device_errors([&] {
-    const cl::Context context(state_->device.context(), true);
     const BorrowedQueue borrowed(state_->device);
     const cl::CommandQueue& queue = *borrowed;
-    const ImageBuffers memory(context, frame.width, frame.height, images);
+    const ImageBuffers memory(state_->device, queue, frame.width, frame.height, images);
     check_outputs(memory, images, {{lit, light}, {result, beauty}});
-    const BoundLights lights(context, queue, state_->program, frame.lights);
+    const BoundLights lights(state_->device, queue, state_->program, frame.lights);
     const params::TranslucencyImages layouts = {
         memory.layout(light),    memory.layout(albedo), memory.layout(position),  memory.layout(normal),
         memory.layout(material), memory.layout(mask),   memory.layout(thickness), memory.layout(beauty),
@@ -137,12 +136,12 @@ void Translucency::run(const TranslucencyFrame& frame) const {
     params.copies_light = memory.same_place(lit, light) ? 0 : 1;
     params.copies_beauty = memory.same_place(result, beauty) ? 0 : 1;
     const auto buffer = [&](Name name) { return memory.buffer(memory.has(name) ? name : light); };
-    run_per_pixel(queue, state_->program, "transmit", frame.width, frame.height, layouts, params, buffer(light),
-                  buffer(albedo), buffer(position), buffer(normal), buffer(material), buffer(mask), buffer(thickness),
-                  buffer(beauty), buffer(lit), buffer(result), lights.lights(), lights.maps(), state_->slabs,
-                  state_->tables);
+    run_per_pixel(state_->device, queue, state_->program, "transmit", frame.width, frame.height, layouts, params,
+                  buffer(light), buffer(albedo), buffer(position), buffer(normal), buffer(material), buffer(mask),
+                  buffer(thickness), buffer(beauty), buffer(lit), buffer(result), lights.lights(), lights.maps(),
+                  state_->slabs, state_->tables);
     queue.finish();
-    memory.read_back(queue);
+    memory.read_back();
   });
 }
 

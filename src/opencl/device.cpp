@@ -7,33 +7,21 @@
 #include <mutex>
 #include <utility>
 
+#include "opencl/device_shape.hpp"
+
 namespace dermis {
 
 namespace {
-
-std::string type_name(cl_device_type type) {
-  if (type & CL_DEVICE_TYPE_CPU) return "CPU";
-  if (type & CL_DEVICE_TYPE_GPU) return "GPU";
-  if (type & CL_DEVICE_TYPE_ACCELERATOR) return "accelerator";
-  return "other";
-}
-
-/// Lanes that suit the device, of the widths that the kernels know. Processors with vectors of 8 floats are faster by
-/// 16, two vectors at a time: they take 0.80 to 0.93 of the time for passes over surfaces, and 0.86 to 1 for textures
-/// (AVX2, measured).
-int kernel_vector_width(const cl::Device& device) {
-  const auto native = static_cast<int>(device.getInfo<CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT>());
-  return native >= 8 ? 16 : native >= 4 ? 4 : 1;
-}
 
 DeviceInfo describe(const cl::Device& device) {
   DeviceInfo info;
   info.name = device.getInfo<CL_DEVICE_NAME>();
   info.platform = cl::Platform(device.getInfo<CL_DEVICE_PLATFORM>()).getInfo<CL_PLATFORM_NAME>();
   info.driver = device.getInfo<CL_DRIVER_VERSION>();
-  info.type = type_name(device.getInfo<CL_DEVICE_TYPE>());
+  const DeviceShape shape = device_shape(device);
+  info.type = shape.type;
+  info.vector_width = shape.vector_width;
   info.compute_units = static_cast<int>(device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>());
-  info.vector_width = kernel_vector_width(device);
   info.memory_bytes = device.getInfo<CL_DEVICE_GLOBAL_MEM_SIZE>();
   info.max_buffer_bytes = device.getInfo<CL_DEVICE_MAX_MEM_ALLOC_SIZE>();
   return info;
@@ -67,7 +55,7 @@ std::string lower(std::string_view text) {
 }
 
 bool matches(const cl::Device& device, std::size_t number, const std::string& name) {
-  if (name.empty() || name == std::to_string(number)) return true;
+  if (name == std::to_string(number)) return true;
   const bool is_number = std::all_of(name.begin(), name.end(), [](unsigned char c) { return std::isdigit(c) != 0; });
   if (is_number) return false;
   const DeviceInfo info = describe(device);
@@ -79,6 +67,11 @@ cl::Device find_device(const std::string& name) {
   const std::vector<cl::Device> devices = all_devices();
   if (devices.empty()) {
     throw Error(ErrorCode::device, "device", "no OpenCL device", "an OpenCL driver, for instance pocl-opencl-icd");
+  }
+  if (name.empty()) {
+    std::vector<DeviceInfo> infos;
+    for (const cl::Device& device : devices) infos.push_back(describe(device));
+    return devices[preferred_device(infos)];
   }
   std::string names;
   for (std::size_t i = 0; i < devices.size(); ++i) {
@@ -134,7 +127,8 @@ Device Device::open(std::string_view name, int threads) {
     cl::Device device = find_device(wanted);
     if (threads != 0) device = with_threads(device, threads);
     Device result;
-    result.state_ = std::make_shared<State>(State{device, cl::Context(device), describe(device)});
+    result.state_ = std::make_shared<State>(
+        State{device, cl::Context(device), describe(device), device_shape(device).shares_host_memory});
     return result;
   });
 }
@@ -151,7 +145,8 @@ Device Device::adopt(cl_context context, cl_device_id device) {
       throw Error(ErrorCode::usage, "device", "a device of another context", "a device of the context");
     }
     Device result;
-    result.state_ = std::make_shared<State>(State{adopted, its_context, describe(adopted)});
+    result.state_ = std::make_shared<State>(
+        State{adopted, its_context, describe(adopted), device_shape(adopted).shares_host_memory});
     return result;
   });
 }
@@ -160,9 +155,26 @@ Device with_kernel_shape(const Device& device, int vector_width, std::string_vie
   Device::State state = *device.state_;
   state.info.vector_width = vector_width;
   state.info.type = type;
+  state.shares_host_memory = type != "GPU";
   Device result;
   result.state_ = std::make_shared<Device::State>(state);
   return result;
+}
+
+Device with_largest_buffer(const Device& device, std::uint64_t bytes) {
+  Device::State state = *device.state_;
+  state.info.max_buffer_bytes = bytes;
+  Device result;
+  result.state_ = std::make_shared<Device::State>(state);
+  return result;
+}
+
+bool shares_host_memory(const Device& device) { return device.state_->shares_host_memory; }
+
+std::size_t preferred_device(std::span<const DeviceInfo> devices) {
+  const auto gpu =
+      std::find_if(devices.begin(), devices.end(), [](const DeviceInfo& its) { return its.type == "GPU"; });
+  return gpu == devices.end() ? 0 : static_cast<std::size_t>(gpu - devices.begin());
 }
 
 DeviceCache& cache_of(const Device& device) { return *device.state_->cache; }

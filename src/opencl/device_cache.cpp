@@ -1,5 +1,10 @@
 #include "opencl/device_cache.hpp"
 
+#include <algorithm>
+#include <utility>
+
+#include "opencl/device_buffer.hpp"
+
 namespace dermis {
 
 namespace {
@@ -28,6 +33,29 @@ BorrowedQueue::~BorrowedQueue() {
   clFinish(queue_());  // whatever has ended the run
   const std::scoped_lock lock(cache_.queues_mutex);
   cache_.queues.push_back(queue_);
+}
+
+BorrowedBuffer::BorrowedBuffer(const Device& device, std::string_view name, std::size_t bytes)
+    : cache_(cache_of(device)) {
+  {
+    const std::scoped_lock lock(cache_.copies_mutex);
+    const auto fits = [&](const cl::Buffer& buffer) { return buffer.getInfo<CL_MEM_SIZE>() == bytes; };
+    const auto found = std::find_if(cache_.copies.begin(), cache_.copies.end(), fits);
+    if (found != cache_.copies.end()) {
+      buffer_ = std::move(*found);
+      cache_.copies.erase(found);
+      return;
+    }
+  }
+  buffer_ = device_buffer(device, name, bytes);
+}
+
+BorrowedBuffer::~BorrowedBuffer() {
+  if (buffer_() == nullptr) return;     // moved from
+  constexpr std::size_t most = 2 * 10;  // the images of two frames
+  const std::scoped_lock lock(cache_.copies_mutex);
+  cache_.copies.push_back(std::move(buffer_));
+  if (cache_.copies.size() > most) cache_.copies.erase(cache_.copies.begin());
 }
 
 std::size_t DeviceCache::bytes_of(const Taps& taps) {

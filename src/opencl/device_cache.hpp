@@ -4,6 +4,7 @@
 #include <memory>
 #include <mutex>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "dermis/device.hpp"
@@ -35,6 +36,10 @@ struct DeviceCache {
   std::vector<cl::CommandQueue> queues;
   std::mutex queues_mutex;
 
+  /// Buffers that no run has, for copies of images; the last ones to come back are kept.
+  std::vector<cl::Buffer> copies;
+  std::mutex copies_mutex;
+
   static std::size_t bytes_of(const Taps& taps);
 };
 
@@ -56,6 +61,24 @@ class BorrowedQueue {
  private:
   DeviceCache& cache_;
   cl::CommandQueue queue_;
+};
+
+/// A buffer for a copy of an image, for one run at a time. The device keeps it for the next run.
+class BorrowedBuffer {
+ public:
+  /// The device outlives it. Throws as device_buffer.
+  BorrowedBuffer(const Device& device, std::string_view name, std::size_t bytes);
+  ~BorrowedBuffer();
+  BorrowedBuffer(BorrowedBuffer&&) noexcept = default;
+  BorrowedBuffer& operator=(BorrowedBuffer&&) = delete;
+  BorrowedBuffer(const BorrowedBuffer&) = delete;
+  BorrowedBuffer& operator=(const BorrowedBuffer&) = delete;
+
+  const cl::Buffer& operator*() const { return buffer_; }
+
+ private:
+  DeviceCache& cache_;
+  cl::Buffer buffer_;
 };
 
 }  // namespace dermis

@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <string>
 
+#include "opencl/device_buffer.hpp"
+
 namespace dermis {
 
 namespace {
@@ -97,13 +99,14 @@ void check_image(const CallerImage& image, int width, int height) {
   }
 }
 
-ImageBuffers::ImageBuffers(const cl::Context& context, int width, int height, std::span<const CallerImage> images)
-    : width_(width), height_(height), buffers_(images.size()), layouts_(images.size()) {
+ImageBuffers::ImageBuffers(const Device& device, const cl::CommandQueue& queue, int width, int height,
+                           std::span<const CallerImage> images)
+    : queue_(queue), width_(width), height_(height), buffers_(images.size()), layouts_(images.size()) {
   std::vector<HostRange> ranges;
   const auto host_extent = [&](const CallerImage& image) {
     const Extent extent = extent_of(image, width, height);
     const auto* host = static_cast<const std::byte*>(image.host);
-    return HostRange{host + extent.begin, host + extent.end, image.is_output};
+    return HostRange{host + extent.begin, host + extent.end, image.is_output, image.name};
   };
   for (const CallerImage& image : images) {
     if (image.host != nullptr) ranges.push_back(host_extent(image));
@@ -117,11 +120,7 @@ ImageBuffers::ImageBuffers(const cl::Context& context, int width, int height, st
       host_ranges_.push_back(range);
     }
   }
-  for (const HostRange& range : host_ranges_) {
-    const cl_mem_flags access = range.written ? CL_MEM_READ_WRITE : CL_MEM_READ_ONLY;
-    host_buffers_.emplace_back(context, access | CL_MEM_USE_HOST_PTR, static_cast<std::size_t>(range.end - range.begin),
-                               const_cast<std::byte*>(range.begin));
-  }
+  bind_host_ranges(device);
 
   for (std::size_t i = 0; i < images.size(); ++i) {
     channels_.push_back(images[i].channels);
@@ -144,6 +143,24 @@ ImageBuffers::ImageBuffers(const cl::Context& context, int width, int height, st
                    static_cast<int>(layout.channel_stride),
                    static_cast<int>(layout.format),
                    0};
+  }
+}
+
+ImageBuffers::~ImageBuffers() {
+  if (!copies_.empty()) clFinish(queue_());  // before another run takes them
+}
+
+void ImageBuffers::bind_host_ranges(const Device& device) {
+  for (const HostRange& range : host_ranges_) {
+    if (shares_host_memory(device)) {
+      host_buffers_.push_back(buffer_over(device, range.name, range.size(), const_cast<std::byte*>(range.begin),
+                                          range.written ? CL_MEM_READ_WRITE : CL_MEM_READ_ONLY));
+    } else {
+      // Outputs, too: what lies between their pixels comes back as it was.
+      copies_.emplace_back(device, range.name, range.size());
+      host_buffers_.push_back(*copies_.back());
+      queue_.enqueueWriteBuffer(host_buffers_.back(), CL_FALSE, 0, range.size(), range.begin);
+    }
   }
 }
 
@@ -196,14 +213,18 @@ bool ImageBuffers::overlap(std::size_t a, std::size_t b) const {
   return x.begin < y.end && y.begin < x.end;
 }
 
-void ImageBuffers::read_back(const cl::CommandQueue& queue) const {
+void ImageBuffers::read_back() const {
   for (std::size_t i = 0; i < host_ranges_.size(); ++i) {
-    if (!host_ranges_[i].written) continue;
-    const auto size = static_cast<std::size_t>(host_ranges_[i].end - host_ranges_[i].begin);
-    void* mapped = queue.enqueueMapBuffer(host_buffers_[i], CL_TRUE, CL_MAP_READ, 0, size);
-    queue.enqueueUnmapMemObject(host_buffers_[i], mapped);
+    const HostRange& range = host_ranges_[i];
+    if (!range.written) continue;
+    if (copies_.empty()) {
+      void* mapped = queue_.enqueueMapBuffer(host_buffers_[i], CL_TRUE, CL_MAP_READ, 0, range.size());
+      queue_.enqueueUnmapMemObject(host_buffers_[i], mapped);
+    } else {
+      queue_.enqueueReadBuffer(host_buffers_[i], CL_FALSE, 0, range.size(), const_cast<std::byte*>(range.begin));
+    }
   }
-  queue.finish();
+  queue_.finish();
 }
 
 }  // namespace dermis

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "dermis/frame.hpp"
+#include "opencl/device_cache.hpp"
 #include "opencl/opencl.hpp"
 #include "opencl/params.hpp"
 
@@ -41,11 +42,18 @@ void check_size(int width, int height, const char* argument);
 /// Throws Error(usage) if kernels cannot read the format or the layout, or a buffer is too small.
 void check_image(const CallerImage& image, int width, int height);
 
-/// Buffers for images: those of the caller, or buffers over the caller's host memory. Host images that overlap, such as
-/// channels of one interleaved picture or an output in place of an input, share a buffer.
+/// Buffers for images: those of the caller, buffers over the caller's host memory, or copies of it on a device that has
+/// memory of its own. Host images that overlap, such as channels of one interleaved picture or an output in place of an
+/// input, share a buffer.
 class ImageBuffers {
  public:
-  ImageBuffers(const cl::Context& context, int width, int height, std::span<const CallerImage> images);
+  /// Puts the copying on the queue, which runs in order if images are in host memory; they outlive it. Throws
+  /// Error(device) that names the image for which the device has no room.
+  ImageBuffers(const Device& device, const cl::CommandQueue& queue, int width, int height,
+               std::span<const CallerImage> images);
+  ~ImageBuffers();
+  ImageBuffers(const ImageBuffers&) = delete;
+  ImageBuffers& operator=(const ImageBuffers&) = delete;
 
   bool has(std::size_t image) const { return buffers_[image]() != nullptr; }
   const cl::Buffer& buffer(std::size_t image) const { return buffers_[image]; }
@@ -57,19 +65,26 @@ class ImageBuffers {
   bool same_place(std::size_t a, std::size_t b) const;
 
   /// Makes the outputs visible in host memory. Blocks.
-  void read_back(const cl::CommandQueue& queue) const;
+  void read_back() const;
 
  private:
   struct HostRange {
     const std::byte* begin;
     const std::byte* end;
     bool written;
+    const char* name;
+
+    std::size_t size() const { return static_cast<std::size_t>(end - begin); }
   };
 
+  void bind_host_ranges(const Device& device);
+
+  cl::CommandQueue queue_;
   int width_, height_;
   std::vector<int> channels_;
   std::vector<HostRange> host_ranges_;
   std::vector<cl::Buffer> host_buffers_;  ///< one per range
+  std::vector<BorrowedBuffer> copies_;    ///< one per range, if the device does not share the host's memory
   std::vector<cl::Buffer> buffers_;
   std::vector<params::ImageParams> layouts_;
 };

@@ -5,6 +5,7 @@
 #include <span>
 #include <string>
 
+#include "opencl/grid.hpp"
 #include "opencl/image_buffers.hpp"
 #include "opencl/opencl.hpp"
 
@@ -14,14 +15,11 @@ inline std::string scalar_build_options() { return "-cl-std=CL1.2 -DV=1"; }
 
 /// Launches a kernel over all pixels.
 template <class... Arguments>
-void run_per_pixel(const cl::CommandQueue& queue, const cl::Program& program, const char* kernel_name, int width,
-                   int height, const Arguments&... arguments) {
+void run_per_pixel(const Device& device, const cl::CommandQueue& queue, const cl::Program& program,
+                   const char* kernel_name, int width, int height, const Arguments&... arguments) {
   cl::Kernel kernel(program, kernel_name);
   set_arguments(kernel, arguments...);
-  // PoCL compiles a kernel for every size of work-groups that it is launched with; GPUs know which one suits them.
-  const cl_device_type type = queue.getInfo<CL_QUEUE_DEVICE>().getInfo<CL_DEVICE_TYPE>();
-  const cl::NDRange local = (type & CL_DEVICE_TYPE_CPU) != 0 ? cl::NDRange(1, 1) : cl::NullRange;
-  queue.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(width, height), local);
+  enqueue(queue, kernel, lines(device, width, height));
 }
 
 /// An output and the input whose place it may take; -1 for none.

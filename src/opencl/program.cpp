@@ -28,6 +28,17 @@ void append_file(const std::string& name, std::set<std::string>& seen, std::stri
   }
 }
 
+/// The first line of a build log that tells of an error, else the first one.
+std::string telling_line(const std::string& log) {
+  std::istringstream lines(log);
+  std::string first;
+  for (std::string line; std::getline(lines, line);) {
+    if (line.find("error") != std::string::npos) return line;
+    if (first.empty()) first = line;
+  }
+  return first;
+}
+
 cl::Program build(const cl::Context& context, const cl::Device& device, const std::string& source,
                   const std::string& options) {
   // One at a time: not every device's compiler stands several threads, and PoCL's makes them wait for each other.
@@ -35,10 +46,10 @@ cl::Program build(const cl::Context& context, const cl::Device& device, const st
   const std::lock_guard lock(one_at_a_time);
   cl::Program program(context, source);
   try {
-    program.build({device}, options.c_str());
+    program.build({device}, (options + " -w").c_str());  // warnings are for tests
   } catch (const cl::Error&) {
-    const std::string log = program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device);
-    throw Error(ErrorCode::device, "kernels", log.substr(0, log.find('\n')), "a successful build");
+    throw Error(ErrorCode::device, "kernels", telling_line(program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device)),
+                "a successful build");
   }
   return program;
 }

@@ -23,7 +23,8 @@ inline std::string build_constant(const char* name, int value) {
   return std::string(" -D") + name + "=" + std::to_string(value);
 }
 
-/// Builds the files with the options, once per device. Throws Error(device) with the first line of the build log.
+/// Builds the files with the options, once per device. Throws Error(device) with the first error of the
+/// build log.
 cl::Program build_program(const Device& device, const std::vector<std::string>& files, const std::string& options);
 
 }  // namespace dermis

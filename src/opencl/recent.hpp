@@ -10,6 +10,7 @@
 #include <memory>
 #include <mutex>
 #include <utility>
+#include <vector>
 
 namespace dermis {
 
@@ -36,6 +37,14 @@ class Recent {
       promise.set_exception(std::current_exception());
     }
     return entry->value.get();
+  }
+
+  /// The keys of the values that are kept or being made.
+  std::vector<Key> keys() {
+    const std::lock_guard lock(mutex_);
+    std::vector<Key> result;
+    for (const Shared& entry : entries_) result.push_back(entry->key);
+    return result;
   }
 
  private:

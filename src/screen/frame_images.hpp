@@ -45,8 +45,9 @@ std::array<CallerImage, image_count> images_of_frame(const Frame& frame);
 /// The buffers of the images of a frame.
 class BoundImages : public ImageBuffers {
  public:
-  BoundImages(const cl::Context& context, const Frame& frame, const std::array<CallerImage, image_count>& images)
-      : ImageBuffers(context, frame.width, frame.height, images) {}
+  BoundImages(const Device& device, const cl::CommandQueue& queue, const Frame& frame,
+              const std::array<CallerImage, image_count>& images)
+      : ImageBuffers(device, queue, frame.width, frame.height, images) {}
 
   bool has(ImageName name) const { return ImageBuffers::has(static_cast<std::size_t>(name)); }
 

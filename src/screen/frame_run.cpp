@@ -78,17 +78,17 @@ FrameRun::FrameRun(const Plan::State& plan, const Frame& frame, const BoundImage
       reuse_(plan.method->by_tiles() ? reuse : nullptr),
       flags_(run_flags(plan, frame, images, reuse_ != nullptr, reuse_ != nullptr && reuse_->continues(plan, frame))) {
   for (const cl_event event : wait_for) last_.emplace_back(event, true);
-  if (flags_.defers != 0 && reuse_ == nullptr) memory.need_deferred(context_);
+  if (flags_.defers != 0 && reuse_ == nullptr) memory.need_deferred(plan.settings.device);
   deferred_ = reuse_ != nullptr ? reuse_->deferred : flags_.defers != 0 ? memory.deferred : memory.material_ids;
 }
 
+void FrameRun::launch(const cl::Kernel& kernel, const Grid& grid) {
+  last_ = {enqueue(queue_, kernel, grid, last_)};
+  phase_->push_back(last_.front());
+}
+
 void FrameRun::launch(const cl::Kernel& kernel, int columns, int rows, int local) {
-  cl::Event event;
-  queue_.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(columns, rows),
-                              local > 0 ? cl::NDRange(local, local) : cl::NullRange, last_.empty() ? nullptr : &last_,
-                              &event);
-  last_ = {event};
-  phase_->push_back(event);
+  launch(kernel, local > 0 ? Grid{columns, rows, local, local} : Grid{columns, rows, group_line, 1});
 }
 
 void FrameRun::launch_runs(const cl::Kernel& kernel, int width, int rows) {
@@ -108,16 +108,21 @@ void FrameRun::classify() {
   queue_.enqueueFillBuffer(memory_.counters, cl_int{0}, 0, RUN_COUNTERS * sizeof(cl_int),
                            last_.empty() ? nullptr : &last_, &cleared);
   last_ = {cleared};
-  const int columns = item_is_pixel_ ? frame_.blocks_x : 1;
   const int blocks_per_item = run_length(frame_.blocks_x);
   cl::Kernel classify(plan_.classification, "classify_blocks");
-  set_arguments(classify, frame_, images_.layouts(), images_.buffers({albedo, depth, material, mask, matte}),
-                blocks_per_item, plan_.materials, memory_.material_ids, memory_.blocks);
-  launch(classify, columns, frame_.blocks_y, 1);
+  if (item_is_pixel_) {
+    set_arguments(classify, frame_, images_.layouts(), images_.buffers({albedo, depth, material, mask, matte}),
+                  plan_.materials, memory_.material_ids, memory_.blocks);
+    launch(classify, {frame_.blocks_x * BLOCK, frame_.blocks_y * BLOCK, BLOCK, BLOCK});
+  } else {
+    set_arguments(classify, frame_, images_.layouts(), images_.buffers({albedo, depth, material, mask, matte}),
+                  blocks_per_item, plan_.materials, memory_.material_ids, memory_.blocks);
+    launch(classify, 1, frame_.blocks_y, 1);
+  }
   cl::Kernel choose(plan_.classification, "choose_passes");
   set_arguments(choose, frame_, blocks_per_item, plan_.materials, plan_.levels, memory_.blocks, memory_.passes,
                 memory_.counters);
-  launch(choose, columns, frame_.blocks_y, 1);
+  launch_runs(choose, frame_.blocks_x, frame_.blocks_y);
   if (memory_.sizes.has_curvature) make_entering_light();
   plan_.method->prepare(*this);
 }
@@ -161,7 +166,7 @@ std::vector<cl::Buffer> FrameRun::inputs(std::initializer_list<ImageName> names)
 
 void FrameRun::scatter(int step) {
   phase_ = &events_.scatter;
-  const int rows = plan_.method->rows_per_step(frame_.height);
+  const int rows = plan_.method->rows_per_step(size());
   plan_.method->scatter(*this, {step * rows, std::min(rows, frame_.height - step * rows)});
 }
 

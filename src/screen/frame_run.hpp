@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "opencl/grid.hpp"
 #include "screen/frame_images.hpp"
 #include "screen/plan_state.hpp"
 #include "screen/reuse.hpp"
@@ -29,7 +30,7 @@ class FrameRun {
 
   void classify();
   /// The number of steps that `scatter` is cut into.
-  int scatter_steps() const { return parts_of(frame_.height, plan_.method->rows_per_step(frame_.height)); }
+  int scatter_steps() const { return parts_of(frame_.height, plan_.method->rows_per_step(size())); }
   void scatter(int step);
   /// Adds the light that enters where only the views of the frame look. Blocks.
   std::vector<ViewStats> add_hidden_light(const Frame& frame);
@@ -45,6 +46,7 @@ class FrameRun {
   void add_to(Stats& stats) const;
 
   // For methods.
+  const Device& device() const { return plan_.settings.device; }
   const cl::Context& context() const { return context_; }
   const cl::CommandQueue& queue() const { return queue_; }
   const cl::Program& program() const { return plan_.program; }
@@ -65,7 +67,9 @@ class FrameRun {
   /// Whether each block has changed since the frame before. Some buffer if flags().reuses is 0.
   const cl::Buffer& changed() const { return reuse_ != nullptr ? reuse_->changed : memory_.material_ids; }
 
-  /// Launches a kernel in work-groups of local x local, or in whatever suits the device if that is 0.
+  /// Launches a kernel.
+  void launch(const cl::Kernel& kernel, const Grid& grid);
+  /// Launches it in work-groups of local x local, or in lines as GPUs want them if that is 0.
   void launch(const cl::Kernel& kernel, int columns, int rows, int local);
   /// Launches a kernel of which a work-item has a run of pixels of a row: a pixel, or all.
   void launch_runs(const cl::Kernel& kernel, int width, int rows);

@@ -172,12 +172,12 @@ Stats Plan::run(const Frame& frame, Reuse::State* reuse, const Progress& progres
   check_views(frame, state_->settings);
   const auto go_on = [&](double share) { return !progress || progress(share); };
   return with_device_errors([&] {
-    const cl::Context context(state_->settings.device.context(), true);
-    const BorrowedQueue borrowed(state_->settings.device);
+    const Device& device = state_->settings.device;
+    const BorrowedQueue borrowed(device);
     const cl::CommandQueue& queue = *borrowed;
-    const BoundImages bound(context, frame, images);
+    const BoundImages bound(device, queue, frame, images);
     // Whatever ends the run, the device must be done with the caller's memory first.
-    const BorrowedMemory<RunMemory> memory(state_->memories, context, queue,
+    const BorrowedMemory<RunMemory> memory(state_->memories, device, queue,
                                            state_->run_sizes(frame.width, frame.height));
     if (!frame.views.empty()) reuse = nullptr;
     FrameRun frame_run(*state_, frame, bound, *memory, queue, {}, reuse);
@@ -199,7 +199,7 @@ Stats Plan::run(const Frame& frame, Reuse::State* reuse, const Progress& progres
     }
     if (!frame.views.empty()) stats.views = frame_run.add_hidden_light(frame);
     frame_run.finish();
-    bound.read_back(queue);
+    bound.read_back();
     frame_run.add_to(stats);
     if (reuse != nullptr) reuse->plan = state_->number;
     stats.classify_ms = milliseconds(frame_run.events().classify);
@@ -226,18 +226,21 @@ Event Plan::enqueue(const Frame& frame, cl_command_queue queue, std::span<const 
     throw Error(ErrorCode::usage, "bad_pixels", "error", "keep or zero, as enqueue cannot wait for the count");
   }
   return with_device_errors([&] {
-    const cl::Context context(state_->settings.device.context(), true);
+    const Device& device = state_->settings.device;
     const cl::CommandQueue its_queue(queue, true);
-    const BoundImages bound(context, frame, images);
-    // The device keeps what it needs of it until it is done.
-    RunMemory memory(context, state_->run_sizes(frame.width, frame.height));
-    FrameRun frame_run(*state_, frame, bound, memory, its_queue, wait_for);
+    const BoundImages bound(device, its_queue, frame, images);
+    auto lent = state_->memories.take_in_turn(device, state_->run_sizes(frame.width, frame.height));
+    std::vector<cl_event> after(wait_for.begin(), wait_for.end());
+    if (lent.used_until() != nullptr) after.push_back(lent.used_until());
+    FrameRun frame_run(*state_, frame, bound, *lent.memory, its_queue, after);
     frame_run.classify();
     for (int step = 0; step < frame_run.scatter_steps(); ++step) frame_run.scatter(step);
     frame_run.finish();
     its_queue.flush();
-    cl_event event = frame_run.last_event()();
+    lent.used_until = frame_run.last_event();
+    cl_event event = lent.used_until();
     clRetainEvent(event);
+    state_->memories.give_back(std::move(lent));
     return dermis::Event(event);
   });
 }

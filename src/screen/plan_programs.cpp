@@ -20,8 +20,14 @@ std::string common_options(const PlanSettings& settings) {
 
 PlanPrograms plan_programs(const PlanSettings& settings, const ScatterMethod& method, int terms) {
   const std::string options = common_options(settings);
-  const std::string by_block = options + build_constant("V", BLOCK);
-  PlanPrograms programs{{{"classify/classify.cl"}, by_block}, {}, {{"classify/fingerprint.cl"}, by_block}};
+  // Classification has a block in a work-group of pixels on GPUs, else rows of a block as vectors.
+  const bool by_pixels = settings.item_is_pixel();
+  const int classified_at_once = by_pixels ? 1 : BLOCK;
+  const std::string by_block = options + build_constant("V", classified_at_once);
+  PlanPrograms programs{
+      {{by_pixels ? "classify/classify_pixels.cl" : "classify/classify.cl", "classify/choose_passes.cl"}, by_block},
+      {},
+      {{"classify/fingerprint.cl"}, by_block}};
   programs.method = method.kernels(terms);
   programs.method.files.emplace_back("frame/finish.cl");
   if (settings.has_curvature()) programs.method.files.emplace_back("frame/entering_light.cl");
@@ -30,8 +36,9 @@ PlanPrograms plan_programs(const PlanSettings& settings, const ScatterMethod& me
                             programs.method.options;
   // Every program costs PoCL 25 ms from its cache on disk, and 200 ms without, for headers and the library of built-in
   // functions: all kernels are in one if they have vectors of the same width.
-  if (method.vector_width() == BLOCK) {
-    programs.method.files.emplace_back("classify/classify.cl");
+  if (method.vector_width() == classified_at_once) {
+    const std::vector<std::string>& files = programs.classification.files;
+    programs.method.files.insert(programs.method.files.end(), files.begin(), files.end());
     programs.classification = programs.method;
   }
   return programs;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "opencl/device.hpp"
 #include "screen/check_materials.hpp"
 #include "screen/curvature.hpp"
 
@@ -17,6 +18,6 @@ bool PlanSettings::has_curvature() const {
                      [](const Material& its) { return dermis::has_curvature(its.profile); });
 }
 
-bool PlanSettings::item_is_pixel() const { return device.info().type == "GPU"; }
+bool PlanSettings::item_is_pixel() const { return dermis::item_is_pixel(device); }
 
 }  // namespace dermis

@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "opencl/device_buffer.hpp"
+
 namespace dermis {
 
 Reuse::Reuse() : state_(std::make_unique<State>()) {}
@@ -19,10 +21,10 @@ bool Reuse::State::continues(const Plan::State& its_plan, const Frame& frame) {
   size = sizes.frame;
   camera = frame.camera;
   mm_per_unit = frame.mm_per_unit;
-  const cl::Context context(its_plan.settings.device.context(), true);
-  deferred = cl::Buffer(context, CL_MEM_READ_WRITE, sizes.deferred_bytes());
-  fingerprints = cl::Buffer(context, CL_MEM_READ_WRITE, size.blocks() * sizeof(cl_ulong));
-  changed = cl::Buffer(context, CL_MEM_READ_WRITE, size.blocks());
+  const Device& device = its_plan.settings.device;
+  deferred = device_buffer(device, "deferred light", sizes.deferred_bytes());
+  fingerprints = device_buffer(device, "fingerprints", size.blocks() * sizeof(cl_ulong));
+  changed = device_buffer(device, "changed blocks", size.blocks());
   return false;
 }
 

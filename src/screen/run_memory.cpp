@@ -2,7 +2,10 @@
 
 #include <array>
 #include <numeric>
+#include <string>
 #include <utility>
+
+#include "opencl/device_buffer.hpp"
 
 namespace dermis {
 
@@ -23,22 +26,24 @@ std::size_t RunSizes::bytes(bool defers) const {
   return std::accumulate(method_bytes.begin(), method_bytes.end(), sum);
 }
 
-RunMemory::RunMemory(const cl::Context& context, RunSizes wanted) : sizes(std::move(wanted)) {
-  const auto allocate = [&](std::size_t bytes) { return cl::Buffer(context, CL_MEM_READ_WRITE, bytes); };
+RunMemory::RunMemory(const Device& device, RunSizes wanted) : sizes(std::move(wanted)) {
   const auto common = common_bytes(sizes.frame);
-  material_ids = allocate(common[0]);
-  blocks = allocate(common[1]);
-  passes = allocate(common[2]);
-  counters = allocate(common[3]);
+  material_ids = device_buffer(device, "material ids", common[0]);
+  blocks = device_buffer(device, "blocks", common[1]);
+  passes = device_buffer(device, "passes", common[2]);
+  counters = device_buffer(device, "counters", common[3]);
   if (sizes.has_curvature) {
-    entering = allocate(3 * sizes.plane_bytes());
-    curvature = allocate(sizes.plane_bytes());
+    entering = device_buffer(device, "light that enters", 3 * sizes.plane_bytes());
+    curvature = device_buffer(device, "curvature", sizes.plane_bytes());
   }
-  for (const std::size_t bytes : sizes.method_bytes) method.push_back(allocate(bytes));
+  for (std::size_t i = 0; i < sizes.method_bytes.size(); ++i) {
+    const std::string name = "method's " + std::to_string(i + 1) + ".";
+    method.push_back(device_buffer(device, name, sizes.method_bytes[i]));
+  }
 }
 
-void RunMemory::need_deferred(const cl::Context& context) {
-  if (deferred() == nullptr) deferred = cl::Buffer(context, CL_MEM_READ_WRITE, sizes.deferred_bytes());
+void RunMemory::need_deferred(const Device& device) {
+  if (deferred() == nullptr) deferred = device_buffer(device, "deferred light", sizes.deferred_bytes());
 }
 
 }  // namespace dermis

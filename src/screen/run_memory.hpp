@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "dermis/device.hpp"
 #include "opencl/opencl.hpp"
 #include "opencl/params.hpp"
 #include "screen/frame_size.hpp"
@@ -35,8 +36,9 @@ struct RunMemory {
   cl::Buffer curvature;            ///< 1/mm, of each pixel; null if it is not asked for
   std::vector<cl::Buffer> method;  ///< as ScatterMethod::buffer_bytes lists them
 
-  RunMemory(const cl::Context& context, RunSizes wanted);
-  void need_deferred(const cl::Context& context);
+  /// Throws Error(device) that names a buffer for which the device has no room.
+  RunMemory(const Device& device, RunSizes wanted);
+  void need_deferred(const Device& device);
 };
 
 }  // namespace dermis

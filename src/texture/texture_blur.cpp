@@ -6,6 +6,7 @@
 #include <span>
 #include <sstream>
 
+#include "opencl/device_buffer.hpp"
 #include "opencl/memory_pool.hpp"
 #include "texture/texture_scatter.hpp"
 
@@ -96,7 +97,7 @@ struct BlurMemory {
   cl::Buffer sum;      ///< the scattered light
   Runs along_u, along_v;
 
-  BlurMemory(const cl::Context& context, const TextureSizes& wanted);
+  BlurMemory(const Device& device, const TextureSizes& wanted);
 };
 
 /// A chain of Gaussians, each blurred along u, then along v.
@@ -121,18 +122,18 @@ class TextureBlur final : public TextureScatter {
   int vector_width_;
 };
 
-BlurMemory::BlurMemory(const cl::Context& context, const TextureSizes& wanted)
-    : sizes(wanted), planes(context, sizes, 3, BLUR_PLANES) {
+BlurMemory::BlurMemory(const Device& device, const TextureSizes& wanted)
+    : sizes(wanted), planes(device, sizes, 3, BLUR_PLANES) {
   for (cl::Buffer* floats : {&between, &last, &sum}) {
-    *floats = device_buffer(context, 3 * sizes.texels() * sizeof(float));
+    *floats = device_buffer(device, "light between passes", 3 * sizes.texels() * sizeof(float));
   }
   for (cl::Buffer* counts : {&along_u.before, &along_u.after, &along_v.before, &along_v.after}) {
-    *counts = device_buffer(context, sizes.texels() * sizeof(cl_int));
+    *counts = device_buffer(device, "runs of texels", sizes.texels() * sizeof(cl_int));
   }
 }
 
 TextureStats TextureBlur::scatter(TextureRun& run) const {
-  const BorrowedMemory<BlurMemory> borrowed(memories_, run.context(), run.queue(), run.sizes());
+  const BorrowedMemory<BlurMemory> borrowed(memories_, run.device(), run.queue(), run.sizes());
   const BlurMemory& memory = *borrowed;
   run.prepare(memory.planes);
   find_runs(run, memory);
@@ -144,10 +145,10 @@ TextureStats TextureBlur::scatter(TextureRun& run) const {
 void TextureBlur::find_runs(TextureRun& run, const BlurMemory& memory) const {
   cl::Kernel rows(passes_, "texture_runs_u");
   set_arguments(rows, run.params(), memory.planes.objects, memory.along_u.before, memory.along_u.after);
-  run.launch(TextureRun::Step::prepare, rows, run.sizes().height);
+  run.launch_lines(TextureRun::Step::prepare, rows, run.sizes().height);
   cl::Kernel columns(passes_, "texture_runs_v");
   set_arguments(columns, run.params(), memory.planes.objects, memory.along_v.before, memory.along_v.after);
-  run.launch(TextureRun::Step::prepare, columns, parts_of(run.sizes().width, vector_width_));
+  run.launch_lines(TextureRun::Step::prepare, columns, parts_of(run.sizes().width, vector_width_));
 }
 
 void TextureBlur::blur(TextureRun& run, const BlurMemory& memory) const {

@@ -36,9 +36,9 @@ std::array<CallerImage, texture_image_count> check_texture(const TextureFrame& f
   return images;
 }
 
-TextureBuffers::TextureBuffers(const cl::Context& context, const TextureFrame& frame,
+TextureBuffers::TextureBuffers(const Device& device, const cl::CommandQueue& queue, const TextureFrame& frame,
                                const std::array<CallerImage, texture_image_count>& images)
-    : ImageBuffers(context, frame.width, frame.height, images) {
+    : ImageBuffers(device, queue, frame.width, frame.height, images) {
   const auto layout_of = [&](TextureImage image) { return layout(static_cast<std::size_t>(image)); };
   layouts_ = {layout_of(TextureImage::light),     layout_of(TextureImage::albedo),
               layout_of(TextureImage::mask),      layout_of(TextureImage::stretch_u),

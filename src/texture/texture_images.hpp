@@ -21,7 +21,7 @@ std::array<CallerImage, texture_image_count> check_texture(const TextureFrame& f
 class TextureBuffers : public ImageBuffers {
  public:
   /// Throws Error(usage) if an output lies over an input, but not in its place.
-  TextureBuffers(const cl::Context& context, const TextureFrame& frame,
+  TextureBuffers(const Device& device, const cl::CommandQueue& queue, const TextureFrame& frame,
                  const std::array<CallerImage, texture_image_count>& images);
 
   bool has(TextureImage image) const { return ImageBuffers::has(static_cast<std::size_t>(image)); }

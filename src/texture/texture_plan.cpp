@@ -48,11 +48,10 @@ TextureStats TexturePlan::run(const TextureFrame& frame) const {
   const auto start = std::chrono::steady_clock::now();
   const auto images = check_texture(frame, state_->description);
   return with_device_errors([&] {
-    const cl::Context context(state_->device.context(), true);
     const BorrowedQueue queue(state_->device);
-    const TextureBuffers buffers(context, frame, images);
+    const TextureBuffers buffers(state_->device, *queue, frame, images);
     const TextureScatter& method = *state_->method;
-    TextureRun run(*queue, method.image_program(), frame, buffers, state_->options.albedo_mix);
+    TextureRun run(state_->device, *queue, method.image_program(), frame, buffers, state_->options.albedo_mix);
     TextureStats stats = method.scatter(run);
     stats.total_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
     return stats;

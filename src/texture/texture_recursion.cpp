@@ -4,6 +4,7 @@
 #include <cmath>
 #include <span>
 
+#include "opencl/device_buffer.hpp"
 #include "opencl/memory_pool.hpp"
 #include "texture/texture_scatter.hpp"
 
@@ -60,10 +61,10 @@ struct RecursionMemory {
   TexturePlanes planes;  ///< the scattered light takes the place of the light
   cl::Buffer between;    ///< after the pass along u: main function and correction of each texel, four floats each
 
-  RecursionMemory(const cl::Context& context, const TextureSizes& wanted)
+  RecursionMemory(const Device& device, const TextureSizes& wanted)
       : sizes(wanted),
-        planes(context, sizes, 4, 1),
-        between(device_buffer(context, 8 * sizes.texels() * sizeof(float))) {}
+        planes(device, sizes, 4, 1),
+        between(device_buffer(device, "light between passes", 8 * sizes.texels() * sizeof(float))) {}
 };
 
 /// Poles that run along rows, then along columns.
@@ -73,7 +74,7 @@ class TextureRecursion final : public TextureScatter {
       : TextureScatter(device, images, true),
         recursion_(make_recursion(profile)),
         passes_(build_passes(device, images, "texture/recursion.cl", "")),
-        lines_per_item_(device.info().type == "GPU" ? 1 : 8) {}
+        lines_per_item_(item_is_pixel(device) ? 1 : 8) {}
 
   double predicted_rel_l2() const override { return recursion_.predicted_rel_l2; }
   TextureStats scatter(TextureRun& run) const override;
@@ -86,7 +87,7 @@ class TextureRecursion final : public TextureScatter {
 };
 
 TextureStats TextureRecursion::scatter(TextureRun& run) const {
-  const BorrowedMemory<RecursionMemory> borrowed(memories_, run.context(), run.queue(), run.sizes());
+  const BorrowedMemory<RecursionMemory> borrowed(memories_, run.device(), run.queue(), run.sizes());
   const RecursionMemory& memory = *borrowed;
   run.prepare(memory.planes);
   const std::array<params::PoleParams, 2> tables = make_pole_tables(recursion_, run.mm_per_texel());
@@ -99,7 +100,7 @@ TextureStats TextureRecursion::scatter(TextureRun& run) const {
     set_arguments(kernel, run.params(), pass, poles, run.stretch(along_v),
                   along_v ? memory.between : memory.planes.light, along_v ? memory.planes.light : memory.between,
                   memory.planes.counters);
-    run.launch(TextureRun::Step::scatter, kernel, parts_of(lines, lines_per_item_));
+    run.launch_lines(TextureRun::Step::scatter, kernel, parts_of(lines, lines_per_item_));
     run.count_parts(lines);
   }
   run.finish(memory.planes.light);

@@ -2,6 +2,8 @@
 
 #include <limits>
 
+#include "opencl/device_buffer.hpp"
+
 namespace dermis {
 
 namespace {
@@ -33,17 +35,17 @@ int TextureSizes::blocks_y() const { return parts_of(height, BLOCK_HEIGHT); }
 std::size_t TextureSizes::texels() const { return static_cast<std::size_t>(stride()) * height; }
 std::size_t TextureSizes::blocks() const { return static_cast<std::size_t>(blocks_x()) * blocks_y(); }
 
-TexturePlanes::TexturePlanes(const cl::Context& context, const TextureSizes& sizes, int light_floats_per_texel,
-                             int lit_parts)
-    : light(device_buffer(context, light_floats_per_texel * sizes.texels() * sizeof(float))),
-      objects(device_buffer(context, sizes.texels())),
-      lit(device_buffer(context, 3 * lit_parts * sizes.blocks())),
-      finest(device_buffer(context, 2 * sizes.blocks() * sizeof(float))),
-      counters(device_buffer(context, TEXTURE_COUNTERS * sizeof(cl_int))) {}
+TexturePlanes::TexturePlanes(const Device& device, const TextureSizes& sizes, int light_floats_per_texel, int lit_parts)
+    : light(device_buffer(device, "light", light_floats_per_texel * sizes.texels() * sizeof(float))),
+      objects(device_buffer(device, "objects", sizes.texels())),
+      lit(device_buffer(device, "lit blocks", 3 * lit_parts * sizes.blocks())),
+      finest(device_buffer(device, "finest stretches", 2 * sizes.blocks() * sizeof(float))),
+      counters(device_buffer(device, "counters", TEXTURE_COUNTERS * sizeof(cl_int))) {}
 
-TextureRun::TextureRun(const cl::CommandQueue& queue, const cl::Program& image_program, const TextureFrame& frame,
-                       const TextureBuffers& images, double albedo_mix)
-    : queue_(queue),
+TextureRun::TextureRun(const Device& device, const cl::CommandQueue& queue, const cl::Program& image_program,
+                       const TextureFrame& frame, const TextureBuffers& images, double albedo_mix)
+    : device_(device),
+      queue_(queue),
       context_(queue.getInfo<CL_QUEUE_CONTEXT>()),
       image_program_(image_program),
       images_(images),
@@ -63,10 +65,13 @@ const cl::Buffer& TextureRun::stretch(bool along_v) const {
   return images_.buffer(along_v ? TextureImage::stretch_v : TextureImage::stretch_u);
 }
 
-void TextureRun::launch(Step step, cl::Kernel& kernel, int columns, int rows) {
-  cl::Event event;
-  queue_.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(columns, rows), cl::NDRange(1, 1), nullptr, &event);
-  events_[static_cast<std::size_t>(step)].push_back(event);
+void TextureRun::launch(Step step, const cl::Kernel& kernel, const Grid& grid) {
+  events_[static_cast<std::size_t>(step)].push_back(enqueue(queue_, kernel, grid));
+}
+
+void TextureRun::launch_blocks(Step step, const cl::Kernel& kernel) {
+  const int items = item_is_pixel(device_) ? BLOCK_WIDTH : 1;
+  launch(step, kernel, {items * params_.blocks_x, params_.blocks_y, items, 1});
 }
 
 void TextureRun::prepare(const TexturePlanes& planes) {
@@ -91,7 +96,7 @@ void TextureRun::finish(const cl::Buffer& scattered) {
 }
 
 TextureStats TextureRun::wait(const TexturePlanes& planes) const {
-  images_.read_back(queue_);
+  images_.read_back();
   std::array<cl_int, TEXTURE_COUNTERS> counters{};
   queue_.enqueueReadBuffer(planes.counters, CL_TRUE, 0, sizeof(counters), counters.data());
   TextureStats stats;

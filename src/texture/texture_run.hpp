@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "opencl/grid.hpp"
 #include "opencl/opencl.hpp"
 #include "texture/texture_images.hpp"
 
@@ -31,12 +32,8 @@ struct TexturePlanes {
   cl::Buffer finest;
   cl::Buffer counters;
 
-  TexturePlanes(const cl::Context& context, const TextureSizes& sizes, int light_floats_per_texel, int lit_parts);
+  TexturePlanes(const Device& device, const TextureSizes& sizes, int light_floats_per_texel, int lit_parts);
 };
-
-inline cl::Buffer device_buffer(const cl::Context& context, std::size_t bytes) {
-  return {context, CL_MEM_READ_WRITE, bytes};
-}
 
 inline int parts_of(int whole, int part) { return (whole + part - 1) / part; }
 
@@ -47,9 +44,10 @@ class TextureRun {
   enum class Step { prepare, scatter, finish };
 
   /// `image_program` has texture_prepare.cl and texture_finish.cl. The images outlive the run.
-  TextureRun(const cl::CommandQueue& queue, const cl::Program& image_program, const TextureFrame& frame,
-             const TextureBuffers& images, double albedo_mix);
+  TextureRun(const Device& device, const cl::CommandQueue& queue, const cl::Program& image_program,
+             const TextureFrame& frame, const TextureBuffers& images, double albedo_mix);
 
+  const Device& device() const { return device_; }
   const cl::Context& context() const { return context_; }
   const cl::CommandQueue& queue() const { return queue_; }
   const TextureSizes& sizes() const { return sizes_; }
@@ -65,9 +63,9 @@ class TextureRun {
   /// Fills the planes from the caller's images.
   void prepare(const TexturePlanes& planes);
 
-  /// Launches a kernel that belongs to the step, with a work-item for each column and row, or for each block.
-  void launch(Step step, cl::Kernel& kernel, int columns, int rows = 1);
-  void launch_blocks(Step step, cl::Kernel& kernel) { launch(step, kernel, params_.blocks_x, params_.blocks_y); }
+  /// Launches a kernel that belongs to the step, with a work-item for each line, or a work-group for each block.
+  void launch_lines(Step step, const cl::Kernel& kernel, int count) { launch(step, kernel, lines(device_, count)); }
+  void launch_blocks(Step step, const cl::Kernel& kernel);
 
   /// Adds to the number of parts that passes consist of.
   void count_parts(std::size_t parts) { parts_ += static_cast<std::int64_t>(parts); }
@@ -79,8 +77,10 @@ class TextureRun {
   TextureStats wait(const TexturePlanes& planes) const;
 
  private:
+  void launch(Step step, const cl::Kernel& kernel, const Grid& grid);
   double milliseconds_of(Step step) const { return milliseconds(events_[static_cast<std::size_t>(step)]); }
 
+  Device device_;
   cl::CommandQueue queue_;
   cl::Context context_;
   const cl::Program& image_program_;

@@ -6,6 +6,7 @@
 #include <iterator>
 #include <string>
 
+#include "opencl/device_buffer.hpp"
 #include "opencl/program.hpp"
 #include "screen/methods/profile_tables.hpp"
 #include "views/crossing.hpp"
@@ -165,7 +166,7 @@ std::vector<ViewStats> HiddenLight::add_to(FrameRun& run, const Frame& frame) co
   }
   const HiddenSamples samples = hidden_samples(views, state_->hidden);
   if (samples.samples.empty()) return stats;
-  const BorrowedMemory<RunMemory> memory(state_->weights->memories, run.context(), run.queue(),
+  const BorrowedMemory<RunMemory> memory(state_->weights->memories, run.device(), run.queue(),
                                          state_->weights->run_sizes(frame.width, frame.height));
   gather(run, samples, sum_weights(run, frame, *memory));
   run.queue().finish();  // before the memory goes to another run
@@ -174,11 +175,11 @@ std::vector<ViewStats> HiddenLight::add_to(FrameRun& run, const Frame& frame) co
 
 ViewPixels HiddenLight::pixels_of(FrameRun& run, const View& view, double mm_per_unit) const {
   const Images images = images_of(view);
-  const ImageBuffers bound(run.context(), view.width, view.height, images);
+  const ImageBuffers bound(run.device(), run.queue(), view.width, view.height, images);
   const auto buffer = [&](Name name) { return bound.buffer(bound.has(name) ? name : light); };
   const std::size_t pixel_count = static_cast<std::size_t>(view.width) * view.height;
   const std::size_t bytes = pixel_count * sizeof(params::ViewPixel);
-  const cl::Buffer pixels(run.context(), CL_MEM_READ_WRITE, bytes);
+  const cl::Buffer pixels = device_buffer(run.device(), "pixels of a view", bytes);
   const params::ViewLayouts layouts{bound.layout(light), bound.layout(albedo), bound.layout(position),
                                     bound.layout(normal), bound.layout(material)};
   const params::ViewParams view_params = params_of(view, mm_per_unit);
@@ -204,7 +205,7 @@ ViewPixels HiddenLight::pixels_of(FrameRun& run, const View& view, double mm_per
 cl::Buffer HiddenLight::sum_weights(FrameRun& run, const Frame& frame, RunMemory& memory) const {
   using enum ImageName;
   const FrameSize& size = run.size();
-  const cl::Buffer ones(run.context(), CL_MEM_READ_WRITE, size.plane() * sizeof(float));
+  const cl::Buffer ones = device_buffer(run.device(), "light of 1", size.plane() * sizeof(float));
   cl::Kernel kernel(state_->gather, "unit_light");
   set_arguments(kernel, run.frame(), run.images().layouts(),
                 run.images().buffers({ImageName::light, ImageName::albedo}), run.run_length(size.width), ones);
@@ -221,7 +222,7 @@ cl::Buffer HiddenLight::sum_weights(FrameRun& run, const Frame& frame, RunMemory
                  .row_stride = static_cast<std::ptrdiff_t>(size.stride() * sizeof(float)),
                  .offset = PADDING * sizeof(float)};
   for (const ImageName output : {scattered, result, beauty}) images[static_cast<std::size_t>(output)] = {};
-  const BoundImages bound(run.context(), frame, images);
+  const BoundImages bound(run.device(), run.queue(), frame, images);
   const cl_event before = run.last_event()();
   FrameRun weights(*state_->weights, frame, bound, memory, run.queue(), {&before, 1});
   weights.classify();

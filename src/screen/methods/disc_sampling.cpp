@@ -28,7 +28,7 @@ class DiscSampling final : public ScatterMethod {
             profile_table_constant() + build_constant("TANGENT_DISC", settings_.options.disc.tangent_plane ? 1 : 0)};
   }
 
-  int rows_per_step(int) const override { return 16; }
+  int rows_per_step(const FrameSize& frame) const override { return rows_at_once(frame); }
 
   /// Discs have no taps: the plainest ones tell how wide kernels are.
   TapsDesign design_of(const Material&) const override {

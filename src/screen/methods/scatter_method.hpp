@@ -49,7 +49,7 @@ class ScatterMethod {
   /// Launches what comes between classification and the first step.
   virtual void prepare(FrameRun& run) const = 0;
   /// A method that takes long scatters a frame in several steps, of so many rows each.
-  virtual int rows_per_step(int height) const { return height; }
+  virtual int rows_per_step(const FrameSize& frame) const { return frame.height; }
   virtual void scatter(FrameRun& run, RowRange rows) const = 0;
   /// Launches what makes the outputs, unless they are written.
   virtual void finish(FrameRun& run) const;
@@ -60,6 +60,10 @@ class ScatterMethod {
   virtual void add_to(Stats&, const FrameRun&) const {}
 
  protected:
+  /// Rows of which a device takes as many pixels as it works on at a time: fewer would leave a large one idle, more
+  /// keep a small one busy for longer than its driver may wait.
+  int rows_at_once(const FrameSize& frame) const;
+
   const PlanSettings& settings_;  ///< of the plan that holds the method
 };
 

@@ -26,7 +26,7 @@ class SurfaceIntegral final : public ScatterMethod {
             profile_table_constant() + build_constant("PROJECTED", has_projected ? 1 : 0)};
   }
 
-  int rows_per_step(int) const override { return 16; }
+  int rows_per_step(const FrameSize& frame) const override { return rows_at_once(frame); }
 
   void upload(const cl::Context& context, const MaterialTables&) override {
     profiles_.upload(context, settings_.materials);
