@@ -7,6 +7,8 @@
 #include "dermis/lights.hpp"
 #include "dermis/plan.hpp"
 #include "dermis/profile.hpp"
+#include "dermis/profile_text.hpp"
+#include "dermis/settings.hpp"
 #include "dermis/shading.hpp"
 #include "dermis/taps.hpp"
 #include "dermis/texture.hpp"

@@ -15,10 +15,10 @@ struct LastError {
 thread_local LastError last;
 
 /// Memory may be short: then there are no words.
-template <class... Words>
-void keep(const Words&... words) noexcept {
+void keep(std::string_view message, std::string_view argument = {}, std::string_view seen = {},
+          std::string_view wanted = {}) noexcept {
   try {
-    last = LastError{std::string(words)...};
+    last = {std::string(message), std::string(argument), std::string(seen), std::string(wanted)};
   } catch (...) {
     last = LastError{};
   }

@@ -2,6 +2,7 @@
 
 #include "c/call.hpp"
 #include "c/handles.hpp"
+#include "dermis/profile_text.hpp"
 
 using dermis::Error;
 using dermis::ErrorCode;

@@ -1,9 +1,9 @@
 // dermis.h does what dermis.hpp does, to the bit, and says what went wrong.
-#include <array>
 #include <cstring>
 #include <memory>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "dermis/dermis.h"
@@ -178,7 +178,9 @@ TEST_CASE("errors in C have the words of those in C++, per thread") {
   const FrameHandle frame = stripe.handle();
   CHECK(dermis_frame_set_image(frame.get(), "scattered", stripe.light.data(), nullptr) == DERMIS_USAGE);
   CHECK(dermis_frame_set_output(frame.get(), "light", stripe.light.data(), nullptr) == DERMIS_USAGE);
-  const dermis_layout layout{static_cast<dermis_format>(9), 0, 0, 0, 0};
+  dermis_layout layout{};
+  const int unknown = 9;
+  std::memcpy(&layout.format, &unknown, sizeof unknown);  // as a caller in C may
   CHECK(dermis_frame_set_image(frame.get(), "light", stripe.light.data(), &layout) == DERMIS_USAGE);
   dermis_plan* plan = nullptr;
   CHECK(dermis_plan_create(open_device().get(), settings.get(), frame.get(), &plan) == DERMIS_USAGE);
@@ -201,27 +203,27 @@ TEST_CASE("profiles in C are those of C++") {
 }
 
 TEST_CASE("every setting has a name and a help, and takes its default as it takes any value") {
-  const std::array values = {std::pair{"method", "disc"},
-                             {"quality", "draft"},
-                             {"quality", "none"},
-                             {"tolerance", "0.01"},
-                             {"model", "svd"},
-                             {"rank", "4"},
-                             {"taps", "33"},
-                             {"placement", "uniform"},
-                             {"disc_samples", "55"},
-                             {"disc_accumulate", "2"},
-                             {"disc_prefiltered", "on"},
-                             {"sheared", "off"},
-                             {"jitter", "0.5"},
-                             {"seed", "4000000000"},
-                             {"lighting", "lit"},
-                             {"albedo_mix", "1"},
-                             {"curvature", "off"},
-                             {"sums_weights", "on"},
-                             {"bad_pixels", "zero"},
-                             {"skip_uniform_light", "off"},
-                             {"cache_folder", "/tmp/a folder"}};
+  const std::vector<std::pair<const char*, const char*>> values = {{"method", "disc"},
+                                                                   {"quality", "draft"},
+                                                                   {"quality", "none"},
+                                                                   {"tolerance", "0.01"},
+                                                                   {"model", "svd"},
+                                                                   {"rank", "4"},
+                                                                   {"taps", "33"},
+                                                                   {"placement", "uniform"},
+                                                                   {"disc_samples", "55"},
+                                                                   {"disc_accumulate", "2"},
+                                                                   {"disc_prefiltered", "on"},
+                                                                   {"sheared", "off"},
+                                                                   {"jitter", "0.5"},
+                                                                   {"seed", "4000000000"},
+                                                                   {"lighting", "lit"},
+                                                                   {"albedo_mix", "1"},
+                                                                   {"curvature", "off"},
+                                                                   {"sums_weights", "on"},
+                                                                   {"bad_pixels", "zero"},
+                                                                   {"skip_uniform_light", "off"},
+                                                                   {"cache_folder", "/tmp/a folder"}};
   dermis::Options options;
   std::size_t found = 0;
   for (const dermis::Setting& setting : dermis::settings()) {

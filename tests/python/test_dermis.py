@@ -1,0 +1,148 @@
+"""dermis for Python: the same bits as C++ whatever the layout of arrays, errors with their fields, threads."""
+
+import sys
+import threading
+import unittest
+
+import dermis
+import numpy as np
+
+HEIGHT, WIDTH = 37, 61
+CAMERA = dermis.Camera.perspective(200, 210, 30, 20)
+
+
+def stripe(dtype=np.float32):
+    light = np.full((HEIGHT, WIDTH, 3), 0.1, dtype)
+    light[:, 20:30] = 2
+    return light
+
+
+def depth():
+    return np.full((HEIGHT, WIDTH), 50, np.float32)
+
+
+def plan(**settings):
+    return dermis.Plan("burley:1/0.6/0.4", images=["depth"], **settings)
+
+
+class Arrays(unittest.TestCase):
+    def setUp(self):
+        self.plan = plan(rank=2, taps=11)
+        self.expected = self.plan.run(CAMERA, 0.5, light=stripe(), depth=depth()).scattered
+
+    def test_light_spreads(self):
+        self.assertEqual(self.expected.shape, (HEIGHT, WIDTH, 3))
+        self.assertEqual(self.expected.dtype, np.float32)
+        # Red farthest.
+        self.assertGreater(self.expected[18, 31, 0], self.expected[18, 31, 2])
+        self.assertGreater(self.expected[18, 31, 2], 0.1)
+
+    def test_layouts_give_the_same_bits(self):
+        light = stripe()
+        planar = np.ascontiguousarray(light.transpose(2, 0, 1)).transpose(1, 2, 0)
+        upside_down = np.ascontiguousarray(light[::-1])[::-1]
+        four = np.zeros((HEIGHT, WIDTH, 4), np.float32)
+        four[..., :3] = light
+        for same in (planar, upside_down, four[..., :3], light.astype(np.float64), light.tolist()):
+            result = self.plan.run(CAMERA, 0.5, light=same, depth=depth()).scattered
+            np.testing.assert_array_equal(result, self.expected)
+        constant = np.broadcast_to(np.float32(50), (HEIGHT, WIDTH))
+        np.testing.assert_array_equal(self.plan.run(CAMERA, 0.5, light=light, depth=constant).scattered, self.expected)
+
+    def test_outputs_of_the_caller_are_written(self):
+        out = np.zeros((HEIGHT, WIDTH, 3), np.float16)
+        result = self.plan.run(CAMERA, 0.5, light=stripe(), depth=depth(), scattered=out)
+        self.assertIs(result.scattered, out)
+        np.testing.assert_allclose(out, self.expected, rtol=1e-3)
+        beauty = np.zeros((HEIGHT, WIDTH, 3), np.float32)
+        with_beauty = self.plan.run(CAMERA, 0.5, light=stripe(), depth=depth(), beauty=beauty)
+        np.testing.assert_allclose(with_beauty.result, self.expected - stripe(), atol=1e-6)
+        self.assertEqual(result.stats["pixels_scattered"], WIDTH * HEIGHT)
+
+    def test_materials_by_id(self):
+        ids = np.ones((HEIGHT, WIDTH), np.uint8)
+        ids[:, 25:] = 2
+        two = dermis.Plan({1: "skin", 2: dermis.Profile("marble")}, images=["depth", "material"], pixel_mm={1: 0.125})
+        for kind in (np.uint8, np.uint16, np.uint32, np.float32, np.int64):
+            result = two.run(CAMERA, 0.5, light=stripe(), depth=depth(), material=ids.astype(kind)).scattered
+            if kind == np.uint8:
+                first = result
+            np.testing.assert_array_equal(result, first)
+
+    def test_threads_share_a_plan(self):
+        results = [None] * 4
+
+        def work(i):
+            results[i] = self.plan.run(CAMERA, 0.5, light=stripe(), depth=depth()).scattered
+
+        threads = [threading.Thread(target=work, args=(i,)) for i in range(4)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        for result in results:
+            np.testing.assert_array_equal(result, self.expected)
+
+    def test_progress_may_stop_the_run(self):
+        exact = dermis.Plan("burley:0.5/0.3/0.2", images=["depth"], method="exact")
+        seen = []
+        out = np.full((HEIGHT, WIDTH, 3), -1, np.float32)
+        exact.run(CAMERA, 0.5, light=stripe(), depth=depth(), scattered=out,
+                  progress=lambda share: seen.append(share) or False)
+        self.assertEqual(len(seen), 1)
+        self.assertTrue((out == -1).all())
+        exact.run(CAMERA, 0.5, light=stripe(), depth=depth(), scattered=out, progress=seen.append)
+        self.assertEqual(seen[-1], 1)
+        self.assertTrue((out > 0).all())
+
+
+class Errors(unittest.TestCase):
+    def test_fields(self):
+        with self.assertRaises(dermis.Error) as caught:
+            plan(method="fast")
+        error = caught.exception
+        self.assertEqual((error.code, error.argument, error.seen), (2, "method", "fast"))
+        self.assertEqual(str(error), "method: got fast, want separable, exact, disc")
+
+    def test_what_is_refused(self):
+        light, z = stripe(), depth()
+        its_plan = plan()
+        refused = [lambda: dermis.Profile("butter"), lambda: plan(speed=1), lambda: dermis.Device("no such device"),
+                   lambda: dermis.Plan("skin", images=["colour"]),
+                   lambda: its_plan.run(CAMERA, light=light), lambda: its_plan.run(CAMERA, depth=z),
+                   lambda: its_plan.run(CAMERA, light=light, depth=z[:5]),
+                   lambda: its_plan.run(CAMERA, light=light[..., 0], depth=z),
+                   lambda: its_plan.run(CAMERA, light=light, depth=z, scattered=np.zeros((2, 2, 3), np.float32)),
+                   lambda: its_plan.run(CAMERA, light=light, depth=z, scattered=np.zeros_like(light, np.int32)),
+                   lambda: its_plan.run(CAMERA, light=light, depth=z, result=np.zeros_like(light))]
+        for call in refused:
+            with self.assertRaises(dermis.Error) as caught:
+                call()
+            self.assertTrue(caught.exception.argument and caught.exception.wanted)
+
+
+class Profiles(unittest.TestCase):
+    def test_functions_take_any_shape(self):
+        skin = dermis.Profile("skin")
+        r = np.linspace(0.1, 3, 6).reshape(2, 3)
+        self.assertEqual(skin.radial(r).shape, (2, 3, 3))
+        np.testing.assert_allclose(skin.cdf(skin.radius([0.3, 0.9])), np.repeat([[0.3], [0.9]], 3, axis=1), rtol=1e-8)
+        np.testing.assert_allclose(skin.edge(0.0), [0.5] * 3)
+        self.assertTrue((skin.transmittance(1.0) < 1).all())
+        self.assertIn("skin", dermis.presets())
+        self.assertEqual(skin, dermis.Profile("skin"))
+
+    def test_taps_keep_all_light(self):
+        taps = dermis.Taps("marble", 0.1, rank=2, taps=17)
+        self.assertEqual(taps.weights.shape, (2, 17, 3))
+        np.testing.assert_array_equal(taps.weights[0].sum(axis=0), [1, 1, 1])
+        self.assertEqual(taps.offsets_px[8], 0)
+        self.assertLess(taps.predicted_rel_l2, 0.1)
+
+    def test_settings_are_listed(self):
+        self.assertIn("quality", dermis.settings())
+
+
+if __name__ == "__main__":
+    print("dermis", dermis.__version__, "on", dermis.Device().info.name, file=sys.stderr)
+    unittest.main()
