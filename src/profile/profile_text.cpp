@@ -146,7 +146,7 @@ constexpr std::array known_kinds = {
                 "  burley:...,projected       with --view or --method exact: as Cycles samples it\n"},
     ProfileKind{
         "walk:", parse_walk, false, "walk:R/G/B[[,mfp],albedo=R/G/B]",
-        "  walk:RR/RG/RB              Cycles' random walk, by subsurface radius in mm and the albedo of each pixel\n"
+        "  walk:RR/RG/RB              Cycles' random walk, by subsurface radius in mm, albedo of each pixel\n"
         "  walk:RR/RG/RB,albedo=AR/AG/AB\n"
         "                             the same with a constant albedo\n"
         "  walk:LR/LG/LB,mfp,albedo=AR/AG/AB\n"

@@ -9,7 +9,6 @@
 #include <optional>
 #include <string>
 #include <utility>
-#include <variant>
 #include <vector>
 
 #include "dermis/dermis.hpp"
@@ -103,11 +102,11 @@ ReadArray written_array(const py::object& object, const char* name, int width, i
   return {array, layout_of(array, *format)};
 }
 
-using ProfileLike = std::variant<Profile, std::string>;
-
-Profile profile_of(const ProfileLike& profile) {
-  if (const auto* text = std::get_if<std::string>(&profile)) return parse_profile("profile", *text);
-  return std::get<Profile>(profile);
+/// A profile, or one as text.
+Profile profile_of(const py::handle& profile) {
+  if (py::isinstance<py::str>(profile)) return parse_profile("profile", profile.cast<std::string>());
+  if (py::isinstance<Profile>(profile)) return profile.cast<Profile>();
+  throw Error(ErrorCode::usage, "profile", "something else", "a Profile, or one as text");
 }
 
 /// A setting's value as text.
@@ -127,9 +126,7 @@ std::vector<Material> materials_of(const py::object& materials, const std::map<i
   std::vector<Material> result;
   const auto add = [&](int id, const py::handle& profile) {
     const auto size = pixel_mm.find(id);
-    result.push_back({.id = id,
-                      .profile = profile_of(profile.cast<ProfileLike>()),
-                      .pixel_mm = size == pixel_mm.end() ? 0 : size->second});
+    result.push_back({.id = id, .profile = profile_of(profile), .pixel_mm = size == pixel_mm.end() ? 0 : size->second});
   };
   if (py::isinstance<py::dict>(materials)) {
     for (const auto& [id, profile] : materials.cast<py::dict>()) add(id.cast<int>(), profile);
@@ -246,7 +243,7 @@ void add_errors(py::module_& m) {
     try {
       std::rethrow_exception(std::move(thrown));
     } catch (const Error& error) {
-      py::object raised = type(error.what());
+      py::object raised = static_cast<const py::object&>(type)(error.what());
       raised.attr("code") = static_cast<int>(error.code());
       raised.attr("argument") = std::string(error.argument());
       raised.attr("seen") = std::string(error.seen());
@@ -322,7 +319,7 @@ void add_profiles(py::module_& m) {
 
 void add_taps(py::module_& m) {
   py::class_<TapSet>(m, "Taps")
-      .def(py::init([](const ProfileLike& profile, double pixel_mm, const py::kwargs& settings) {
+      .def(py::init([](const py::object& profile, double pixel_mm, const py::kwargs& settings) {
              return make_tap_set(profile_of(profile), options_of(settings).taps, pixel_mm);
            }),
            "profile"_a, "pixel_mm"_a)

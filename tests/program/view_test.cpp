@@ -298,7 +298,8 @@ TEST_CASE("info --views tells how much the camera does not see") {
     const Outcome outcome = info({"--material", "1=" + profile});
     INFO(outcome.errors);
     REQUIRE(outcome.exit_code == 0);
-    for (const nlohmann::json& its : nlohmann::json::parse(outcome.output)["materials"]) {
+    const nlohmann::json told = nlohmann::json::parse(outcome.output);
+    for (const nlohmann::json& its : told["materials"]) {
       if (its["id"] != 1) continue;
       CHECK(its["unseen"]["pixels_missing"].get<double>() <= 1);
       return its["unseen"]["mean_share"].get<double>();

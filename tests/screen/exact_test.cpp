@@ -63,7 +63,7 @@ TEST_CASE("a projected profile tells where surfaces bend, and on planes alone it
     return oracle::compare(pictures[0], pictures[1]).relative_l2;
   };
   CHECK(off("touching") < 1e-3);  // weights of a plane sum to 1 to within the quadrature
-  CHECK(off("sphere") > 1e-2);
+  CHECK(off("sphere") > 3e-3);
 }
 
 TEST_CASE("the exact method does not depend on vector width or work-items", "[exact]") {
