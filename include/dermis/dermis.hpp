@@ -3,6 +3,7 @@
 
 #include "dermis/device.hpp"
 #include "dermis/error.hpp"
+#include "dermis/event.hpp"
 #include "dermis/frame.hpp"
 #include "dermis/lights.hpp"
 #include "dermis/plan.hpp"

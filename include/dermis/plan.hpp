@@ -11,19 +11,14 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "dermis/device.hpp"
+#include "dermis/event.hpp"
 #include "dermis/frame.hpp"
 #include "dermis/profile.hpp"
 #include "dermis/taps.hpp"
 #include "dermis/words.hpp"
-
-struct _cl_command_queue;
-struct _cl_event;
-using cl_command_queue = struct _cl_command_queue*;
-using cl_event = struct _cl_event*;
 
 namespace dermis {
 
@@ -232,26 +227,6 @@ struct Stats {
 /// Called with the share of work done, 0..1. Returning false stops the run after the current step.
 using Progress = std::function<bool(double)>;
 
-/// Work that was handed to a queue. Releases its OpenCL event when it goes.
-class Event {
- public:
-  explicit Event(cl_event adopted);
-  ~Event();
-  Event(Event&& other) noexcept;
-  Event& operator=(Event&& other) noexcept;
-  Event(const Event&) = delete;
-  Event& operator=(const Event&) = delete;
-
-  /// Blocks until the work is done. Throws Error(device) if it failed.
-  void wait() const;
-  cl_event handle() const { return event_; }
-  /// Hands the OpenCL event over to the caller, who releases it.
-  cl_event release() { return std::exchange(event_, nullptr); }
-
- private:
-  cl_event event_;
-};
-
 /// The data that one frame of a sequence leaves for the next one: the light after scattering, 12 bytes per pixel, and a
 /// hash of the inputs of each 16 x 16 pixels. For one thread at a time.
 class Reuse {
@@ -292,8 +267,9 @@ class Plan {
   Stats run(const Frame& frame, Reuse& reuse, const Progress& progress = {}) const;
 
   /// Puts the work of `run` on the caller's queue, which is of the plan's context and device, to start after the events
-  /// in `wait_for`. All images are buffers. Never blocks. Throws Error(usage) also if an image is in host memory, if
-  /// bad pixels are to be errors, or if the frame has views.
+  /// in `wait_for`. All images are buffers. Never blocks. Frames of a plan share its device memory, so they run one
+  /// after the other, in the order of these calls; once one is done nothing is allocated for the next. Throws
+  /// Error(usage) also if an image is in host memory, if bad pixels are to be errors, or if the frame has views.
   Event enqueue(const Frame& frame, cl_command_queue queue, std::span<const cl_event> wait_for = {}) const;
 
   /// The options with what a quality or a tolerance has made of them.

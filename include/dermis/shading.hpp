@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "dermis/device.hpp"
+#include "dermis/event.hpp"
 #include "dermis/frame.hpp"
 #include "dermis/lights.hpp"
 
@@ -91,6 +92,10 @@ class Shading {
   /// there is at least one. Throws Error(usage) if the frame is malformed, Error(role_missing) if an image is missing,
   /// Error(device) on a device error.
   void run(const ShadingFrame& frame) const;
+
+  /// Puts the work of `run` on the caller's queue, as Plan::enqueue does. All images, those of maps too, are buffers.
+  /// Never blocks.
+  Event enqueue(const ShadingFrame& frame, cl_command_queue queue, std::span<const cl_event> wait_for = {}) const;
 
   struct State;  ///< not for callers
 

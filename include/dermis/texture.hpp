@@ -7,9 +7,11 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "dermis/device.hpp"
+#include "dermis/event.hpp"
 #include "dermis/frame.hpp"
 #include "dermis/profile.hpp"
 #include "dermis/words.hpp"
@@ -164,6 +166,9 @@ class TexturePlan {
   /// may lie over the inputs. Throws Error(usage) if the frame is not as described or malformed, Error(role_missing)
   /// for a result without an albedo, Error(device) on a device error.
   TextureStats run(const TextureFrame& frame) const;
+
+  /// Puts the work of `run` on the caller's queue, as Plan::enqueue does. All images are buffers. Never blocks.
+  Event enqueue(const TextureFrame& frame, cl_command_queue queue, std::span<const cl_event> wait_for = {}) const;
 
   /// The error to expect of the fit to the profile, before discretisation: as TapSet::predicted_rel_l2.
   double predicted_rel_l2() const;

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "dermis/event.hpp"
 #include "dermis/lights.hpp"
 #include "dermis/plan.hpp"
 
@@ -91,6 +92,10 @@ class Translucency {
   /// Works on one frame of host memory or of buffers and waits for it. Writes only the pixels of the outputs.
   /// Throws Error(usage) if the frame is not as described or malformed, Error(device) on a device error.
   void run(const TranslucencyFrame& frame) const;
+
+  /// Puts the work of `run` on the caller's queue, as Plan::enqueue does. All images, those of maps too, are buffers.
+  /// Never blocks.
+  Event enqueue(const TranslucencyFrame& frame, cl_command_queue queue, std::span<const cl_event> wait_for = {}) const;
 
   struct State;  ///< not for callers
 

@@ -10,8 +10,7 @@
 #include <string>
 
 #include "opencl/device_buffer.hpp"
-#include "opencl/image_buffers.hpp"
-#include "opencl/pixel_stage.hpp"
+#include "opencl/grid.hpp"
 
 namespace dermis {
 
@@ -205,22 +204,41 @@ std::vector<params::LightParams> make_light_params(std::span<const Light> lights
   return all;
 }
 
-BoundLights::BoundLights(const Device& device, const cl::CommandQueue& queue, const cl::Program& program,
-                         std::span<const Light> lights) {
-  const cl::Context context(device.context(), true);
+std::vector<CallerImage> map_images(std::span<const Light> lights) {
+  std::vector<CallerImage> images;
+  for (std::size_t i = 0; i < lights.size(); ++i) {
+    if (lights[i].map.depth) images.push_back(CheckedLight(lights[i], i).map());
+  }
+  return images;
+}
+
+LightSizes sizes_of(std::span<const Light> lights) {
+  LightSizes sizes{lights.size(), 0};
+  for (const Light& light : lights) {
+    if (light.map.depth) sizes.texels += std::size_t{1} * light.map.width * light.map.height;
+  }
+  return sizes;
+}
+
+LightMemory::LightMemory(const Device& device, const LightSizes& wanted)
+    : sizes(wanted),
+      lights(device_buffer(device, "lights", sizes.lights * sizeof(params::LightParams))),
+      // a buffer has at least one byte
+      maps(device_buffer(device, "shadow maps", std::max<std::size_t>(1, sizes.texels) * sizeof(float))) {}
+
+BoundLights::BoundLights(const Device& device, CommandChain& commands, const cl::Program& program,
+                         std::span<const Light> lights, const LightMemory& memory) {
   const std::vector<params::LightParams> all = make_light_params(lights);
-  std::size_t texels = 1;  // a buffer has at least one byte
-  for (const params::LightParams& light : all) texels += std::size_t{1} * light.map_width * light.map_height;
-  lights_ = upload_rows(context, all);
-  maps_ = device_buffer(device, "shadow maps", texels * sizeof(float));
+  commands.write(memory.lights, all);
   for (std::size_t i = 0; i < lights.size(); ++i) {
     if (!lights[i].map.depth) continue;
     const CallerImage map = CheckedLight(lights[i], i).map();
-    const ImageBuffers memory(device, queue, lights[i].map.width, lights[i].map.height, std::span(&map, 1));
-    const ShadowMap& its_map = lights[i].map;
-    run_per_pixel(device, queue, program, "gather_map", its_map.width, its_map.height, memory.buffer(0),
-                  memory.layout(0), its_map.width, maps_, all[i].first_texel);
-    queue.finish();  // before the buffer over the caller's memory goes
+    const ShadowMap& its = lights[i].map;
+    maps_.push_back(
+        std::make_unique<ImageBuffers>(device, commands.queue(), its.width, its.height, std::span(&map, 1)));
+    cl::Kernel kernel(program, "gather_map");
+    set_arguments(kernel, maps_.back()->buffer(0), maps_.back()->layout(0), its.width, memory.maps, all[i].first_texel);
+    commands.launch(kernel, lines(device, its.width, its.height));
   }
 }
 

@@ -8,8 +8,7 @@
 
 #include "lighting/check_range.hpp"
 #include "lighting/highlight_tables.hpp"
-#include "lighting/light_tables.hpp"
-#include "opencl/device_cache.hpp"
+#include "lighting/lit_frame.hpp"
 #include "opencl/pixel_stage.hpp"
 #include "opencl/program.hpp"
 
@@ -72,7 +71,11 @@ struct Shading::State {
   cl::Buffer reflected;
   double seen_gain;  ///< 1 / (1 - rho_mean)
 
+  mutable MemoryPool<LightMemory> memories = {};
+
   params::ShadingParams params_of(const ShadingFrame& frame) const;
+  void launch(CommandChain& commands, const ImageBuffers& images, const Images& its_images, const LightMemory& lights,
+              const ShadingFrame& frame) const;
 };
 
 Shading::Shading(const Device& device, const ShadingOptions& options) {
@@ -82,10 +85,10 @@ Shading::Shading(const Device& device, const ShadingOptions& options) {
                                 build_constant("TABLE_SHIFT", 23 - log2_nodes_per_octave_of_lobes);
   state_ = with_device_errors([&] {
     const cl::Context context(device.context(), true);
-    return std::make_unique<State>(
-        State{device, options, build_program(device, {"lighting/shadow_maps.cl", "lighting/shade.cl"}, constants),
-              tables.beckmann, upload_rows(context, tables.nodes), upload_rows(context, tables.reflected),
-              1 / (1 - tables.mean_reflected)});
+    return std::unique_ptr<const State>(
+        new State{device, options, build_program(device, {"lighting/shadow_maps.cl", "lighting/shade.cl"}, constants),
+                  tables.beckmann, upload_rows(context, tables.nodes), upload_rows(context, tables.reflected),
+                  1 / (1 - tables.mean_reflected)});
   });
 }
 
@@ -111,25 +114,43 @@ params::ShadingParams Shading::State::params_of(const ShadingFrame& frame) const
   return p;
 }
 
+void Shading::State::launch(CommandChain& commands, const ImageBuffers& images, const Images& its_images,
+                            const LightMemory& lights, const ShadingFrame& frame) const {
+  check_outputs(images, its_images, {{light, -1}, {seen, albedo}, {specular, -1}, {beauty, -1}});
+  const params::ShadingImages layouts = {images.layout(position), images.layout(normal), images.layout(albedo),
+                                         images.layout(light),    images.layout(seen),   images.layout(specular),
+                                         images.layout(beauty)};
+  const auto output = [&](Name name) { return images.buffer(images.has(name) ? name : position); };
+  cl::Kernel kernel(program, "shade");
+  set_arguments(kernel, layouts, params_of(frame), images.buffer(position), images.buffer(normal),
+                images.buffer(albedo), output(light), output(seen), output(specular), output(beauty), lights.lights,
+                lights.maps, tables, reflected);
+  commands.launch(kernel, lines(device, frame.width, frame.height));
+}
+
 void Shading::run(const ShadingFrame& frame) const {
   const Images images = check_images(frame);
   make_light_params(frame.lights);  // throws if one is wrong, before anything is done
-  const params::ShadingParams params = state_->params_of(frame);
+  viewer_of(frame.viewer);          // the same
   with_device_errors([&] {
-    const BorrowedQueue borrowed(state_->device);
-    const cl::CommandQueue& queue = *borrowed;
-    const ImageBuffers memory(state_->device, queue, frame.width, frame.height, images);
-    check_outputs(memory, images, {{light, -1}, {seen, albedo}, {specular, -1}, {beauty, -1}});
-    const BoundLights lights(state_->device, queue, state_->program, frame.lights);
-    const params::ShadingImages layouts = {memory.layout(position), memory.layout(normal), memory.layout(albedo),
-                                           memory.layout(light),    memory.layout(seen),   memory.layout(specular),
-                                           memory.layout(beauty)};
-    const auto output = [&](Name name) { return memory.buffer(memory.has(name) ? name : position); };
-    run_per_pixel(state_->device, queue, state_->program, "shade", frame.width, frame.height, layouts, params,
-                  memory.buffer(position), memory.buffer(normal), memory.buffer(albedo), output(light), output(seen),
-                  output(specular), output(beauty), lights.lights(), lights.maps(), state_->tables, state_->reflected);
-    queue.finish();
-    memory.read_back();
+    run_lit(state_->device, state_->memories, state_->program, frame.width, frame.height, images, frame.lights,
+            [&](CommandChain& commands, const ImageBuffers& bound, const LightMemory& lights) {
+              state_->launch(commands, bound, images, lights, frame);
+            });
+  });
+}
+
+Event Shading::enqueue(const ShadingFrame& frame, cl_command_queue queue, std::span<const cl_event> wait_for) const {
+  const Images images = check_images(frame);
+  make_light_params(frame.lights);
+  viewer_of(frame.viewer);
+  return with_device_errors([&] {
+    return enqueue_lit(
+        state_->device, state_->memories, state_->program, frame.width, frame.height, images, frame.lights,
+        [&](CommandChain& commands, const ImageBuffers& bound, const LightMemory& lights) {
+          state_->launch(commands, bound, images, lights, frame);
+        },
+        queue, wait_for);
   });
 }
 

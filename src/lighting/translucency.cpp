@@ -5,9 +5,8 @@
 #include <string>
 
 #include "lighting/check_range.hpp"
-#include "lighting/light_tables.hpp"
+#include "lighting/lit_frame.hpp"
 #include "lighting/slab_tables.hpp"
-#include "opencl/device_cache.hpp"
 #include "opencl/pixel_stage.hpp"
 #include "opencl/program.hpp"
 #include "screen/check_materials.hpp"
@@ -77,8 +76,12 @@ struct Translucency::State {
   cl::Buffer slabs;
   cl::Buffer tables;
 
+  mutable MemoryPool<LightMemory> memories = {};
+
   /// All but which inputs are copied.
   params::TranslucencyParams params_of(const TranslucencyFrame& frame) const;
+  void launch(CommandChain& commands, const ImageBuffers& images, const Images& its_images, const LightMemory& lights,
+              const TranslucencyFrame& frame) const;
 };
 
 Translucency::Translucency(const Device& device, const std::vector<Material>& materials,
@@ -96,7 +99,7 @@ Translucency::Translucency(const Device& device, const std::vector<Material>& ma
   const SlabTables tables = make_slab_tables(materials);
   state_ = with_device_errors([&] {
     const cl::Context context(device.context(), true);
-    return std::make_unique<State>(State{
+    return std::unique_ptr<const State>(new State{
         device, frames, options, build_program(device, {"lighting/shadow_maps.cl", "lighting/transmit.cl"}, constants),
         upload_rows(context, tables.materials), upload_rows(context, tables.nodes)});
   });
@@ -119,29 +122,46 @@ params::TranslucencyParams Translucency::State::params_of(const TranslucencyFram
   return p;
 }
 
+void Translucency::State::launch(CommandChain& commands, const ImageBuffers& images, const Images& its_images,
+                                 const LightMemory& lights, const TranslucencyFrame& frame) const {
+  check_outputs(images, its_images, {{lit, light}, {result, beauty}});
+  const params::TranslucencyImages layouts = {
+      images.layout(light),    images.layout(albedo), images.layout(position),  images.layout(normal),
+      images.layout(material), images.layout(mask),   images.layout(thickness), images.layout(beauty),
+      images.layout(lit),      images.layout(result)};
+  params::TranslucencyParams params = params_of(frame);
+  params.copies_light = images.same_place(lit, light) ? 0 : 1;
+  params.copies_beauty = images.same_place(result, beauty) ? 0 : 1;
+  const auto buffer = [&](Name name) { return images.buffer(images.has(name) ? name : light); };
+  cl::Kernel kernel(program, "transmit");
+  set_arguments(kernel, layouts, params, buffer(light), buffer(albedo), buffer(position), buffer(normal),
+                buffer(material), buffer(mask), buffer(thickness), buffer(beauty), buffer(lit), buffer(result),
+                lights.lights, lights.maps, slabs, tables);
+  commands.launch(kernel, lines(device, frame.width, frame.height));
+}
+
 void Translucency::run(const TranslucencyFrame& frame) const {
   const Images images = check_images(frame, state_->description);
   make_light_params(frame.lights);  // throws if one is wrong, before anything is done
   with_device_errors([&] {
-    const BorrowedQueue borrowed(state_->device);
-    const cl::CommandQueue& queue = *borrowed;
-    const ImageBuffers memory(state_->device, queue, frame.width, frame.height, images);
-    check_outputs(memory, images, {{lit, light}, {result, beauty}});
-    const BoundLights lights(state_->device, queue, state_->program, frame.lights);
-    const params::TranslucencyImages layouts = {
-        memory.layout(light),    memory.layout(albedo), memory.layout(position),  memory.layout(normal),
-        memory.layout(material), memory.layout(mask),   memory.layout(thickness), memory.layout(beauty),
-        memory.layout(lit),      memory.layout(result)};
-    params::TranslucencyParams params = state_->params_of(frame);
-    params.copies_light = memory.same_place(lit, light) ? 0 : 1;
-    params.copies_beauty = memory.same_place(result, beauty) ? 0 : 1;
-    const auto buffer = [&](Name name) { return memory.buffer(memory.has(name) ? name : light); };
-    run_per_pixel(state_->device, queue, state_->program, "transmit", frame.width, frame.height, layouts, params,
-                  buffer(light), buffer(albedo), buffer(position), buffer(normal), buffer(material), buffer(mask),
-                  buffer(thickness), buffer(beauty), buffer(lit), buffer(result), lights.lights(), lights.maps(),
-                  state_->slabs, state_->tables);
-    queue.finish();
-    memory.read_back();
+    run_lit(state_->device, state_->memories, state_->program, frame.width, frame.height, images, frame.lights,
+            [&](CommandChain& commands, const ImageBuffers& bound, const LightMemory& lights) {
+              state_->launch(commands, bound, images, lights, frame);
+            });
+  });
+}
+
+Event Translucency::enqueue(const TranslucencyFrame& frame, cl_command_queue queue,
+                            std::span<const cl_event> wait_for) const {
+  const Images images = check_images(frame, state_->description);
+  make_light_params(frame.lights);
+  return with_device_errors([&] {
+    return enqueue_lit(
+        state_->device, state_->memories, state_->program, frame.width, frame.height, images, frame.lights,
+        [&](CommandChain& commands, const ImageBuffers& bound, const LightMemory& lights) {
+          state_->launch(commands, bound, images, lights, frame);
+        },
+        queue, wait_for);
   });
 }
 

@@ -5,22 +5,12 @@
 #include <span>
 #include <string>
 
-#include "opencl/grid.hpp"
 #include "opencl/image_buffers.hpp"
 #include "opencl/opencl.hpp"
 
 namespace dermis {
 
 inline std::string scalar_build_options() { return "-cl-std=CL1.2 -DV=1"; }
-
-/// Launches a kernel over all pixels.
-template <class... Arguments>
-void run_per_pixel(const Device& device, const cl::CommandQueue& queue, const cl::Program& program,
-                   const char* kernel_name, int width, int height, const Arguments&... arguments) {
-  cl::Kernel kernel(program, kernel_name);
-  set_arguments(kernel, arguments...);
-  enqueue(queue, kernel, lines(device, width, height));
-}
 
 /// An output and the input whose place it may take; -1 for none.
 struct OutputPlace {

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "dermis/tap_tables.hpp"
+#include "opencl/command_chain.hpp"
 #include "opencl/device_cache.hpp"
 #include "opencl/program.hpp"
 #include "screen/check_materials.hpp"
@@ -99,23 +100,6 @@ void run_on_black(const Plan& plan, const FrameDescription& frames) {
 }
 
 }  // namespace
-
-Event::Event(cl_event adopted) : event_(adopted) {}
-
-Event::~Event() {
-  if (event_ != nullptr) clReleaseEvent(event_);
-}
-
-Event::Event(Event&& other) noexcept : event_(std::exchange(other.event_, nullptr)) {}
-
-Event& Event::operator=(Event&& other) noexcept {
-  std::swap(event_, other.event_);
-  return *this;
-}
-
-void Event::wait() const {
-  with_device_errors([&] { cl::Event(event_, true).wait(); });
-}
 
 std::unique_ptr<Plan::State> build_plan(PlanSettings its_settings) {
   auto state = std::make_unique<Plan::State>(std::move(its_settings));
@@ -213,11 +197,8 @@ Stats Plan::run(const Frame& frame, Reuse::State* reuse, const Progress& progres
 }
 
 Event Plan::enqueue(const Frame& frame, cl_command_queue queue, std::span<const cl_event> wait_for) const {
-  if (queue == nullptr) throw Error(ErrorCode::usage, "queue", "nullptr", "an OpenCL command queue");
   const auto images = check_frame(frame, state_->settings.frames, state_->settings.options);
-  for (const CallerImage& image : images) {
-    if (image.host != nullptr) throw Error(ErrorCode::usage, image.name, "host memory", "a buffer, to enqueue");
-  }
+  check_enqueued(queue, images);
   if (!frame.views.empty()) {
     throw Error(ErrorCode::usage, "views", std::to_string(frame.views.size()) + " views",
                 "none, as enqueue cannot wait for them");

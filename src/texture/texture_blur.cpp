@@ -7,7 +7,6 @@
 #include <sstream>
 
 #include "opencl/device_buffer.hpp"
-#include "opencl/memory_pool.hpp"
 #include "texture/texture_scatter.hpp"
 
 namespace dermis {
@@ -89,6 +88,22 @@ struct Runs {
   cl::Buffer before, after;
 };
 
+/// BlurTables on the device, for texels of so many mm.
+struct UploadedTables {
+  double mm_per_texel = -1;  ///< of none yet
+  std::vector<cl::Buffer> levels;
+  cl::Buffer weights;
+};
+
+UploadedTables upload_tables(const cl::Context& context, const GaussianChain& chain, double mm_per_texel) {
+  const BlurTables tables = make_blur_tables(chain, mm_per_texel);
+  UploadedTables uploaded{mm_per_texel, {}, upload(context, tables.weights)};
+  for (std::size_t k = 0; k < tables.blurs.size() / 3; ++k) {
+    uploaded.levels.push_back(upload(context, std::span(tables.blurs).subspan(3 * k, 3)));
+  }
+  return uploaded;
+}
+
 struct BlurMemory {
   TextureSizes sizes;
   TexturePlanes planes;
@@ -96,6 +111,7 @@ struct BlurMemory {
   cl::Buffer last;     ///< the Gaussian before
   cl::Buffer sum;      ///< the scattered light
   Runs along_u, along_v;
+  UploadedTables tables;
 
   BlurMemory(const Device& device, const TextureSizes& wanted);
 };
@@ -110,9 +126,15 @@ class TextureBlur final : public TextureScatter {
         vector_width_(device.info().vector_width) {}
 
   double predicted_rel_l2() const override { return chain_.predicted_rel_l2; }
-  TextureStats scatter(TextureRun& run) const override;
+  TextureStats scatter(TextureRun& run) const override {
+    return scatter_with(memories_, run, [&](auto& its_run, auto& memory) { launch(its_run, memory); });
+  }
+  void enqueue(TextureRun& run) const override {
+    enqueue_with(memories_, run, [&](auto& its_run, auto& memory) { launch(its_run, memory); });
+  }
 
  private:
+  void launch(TextureRun& run, BlurMemory& memory) const;
   void find_runs(TextureRun& run, const BlurMemory& memory) const;
   void blur(TextureRun& run, const BlurMemory& memory) const;
 
@@ -132,14 +154,14 @@ BlurMemory::BlurMemory(const Device& device, const TextureSizes& wanted)
   }
 }
 
-TextureStats TextureBlur::scatter(TextureRun& run) const {
-  const BorrowedMemory<BlurMemory> borrowed(memories_, run.device(), run.queue(), run.sizes());
-  const BlurMemory& memory = *borrowed;
+void TextureBlur::launch(TextureRun& run, BlurMemory& memory) const {
+  if (memory.tables.mm_per_texel != run.mm_per_texel()) {
+    memory.tables = upload_tables(run.context(), chain_, run.mm_per_texel());
+  }
   run.prepare(memory.planes);
   find_runs(run, memory);
   blur(run, memory);
   run.finish(memory.sum);
-  return run.wait(memory.planes);
 }
 
 void TextureBlur::find_runs(TextureRun& run, const BlurMemory& memory) const {
@@ -152,16 +174,13 @@ void TextureBlur::find_runs(TextureRun& run, const BlurMemory& memory) const {
 }
 
 void TextureBlur::blur(TextureRun& run, const BlurMemory& memory) const {
-  const BlurTables tables = make_blur_tables(chain_, run.mm_per_texel());
-  const cl::Buffer weights = upload(run.context(), tables.weights);
-  for (std::size_t k = 0; k < tables.blurs.size() / 3; ++k) {
-    const cl::Buffer level = upload(run.context(), std::span(tables.blurs).subspan(3 * k, 3));
+  for (const cl::Buffer& level : memory.tables.levels) {
     for (const bool along_v : {false, true}) {
       const Runs& runs = along_v ? memory.along_v : memory.along_u;
       cl::Kernel kernel(passes_, "texture_blur");
-      set_arguments(kernel, run.params(), run.pass(along_v), level, weights, run.stretch(along_v), runs.before,
-                    runs.after, memory.planes.finest, memory.planes.lit, memory.planes.light, memory.between,
-                    memory.last, memory.sum, memory.planes.counters);
+      set_arguments(kernel, run.params(), run.pass(along_v), level, memory.tables.weights, run.stretch(along_v),
+                    runs.before, runs.after, memory.planes.finest, memory.planes.lit, memory.planes.light,
+                    memory.between, memory.last, memory.sum, memory.planes.counters);
       run.launch_blocks(TextureRun::Step::scatter, kernel);
       run.count_parts(run.sizes().blocks());
     }

@@ -51,10 +51,25 @@ TextureStats TexturePlan::run(const TextureFrame& frame) const {
     const BorrowedQueue queue(state_->device);
     const TextureBuffers buffers(state_->device, *queue, frame, images);
     const TextureScatter& method = *state_->method;
-    TextureRun run(state_->device, *queue, method.image_program(), frame, buffers, state_->options.albedo_mix);
+    CommandChain commands(*queue);
+    TextureRun run(state_->device, commands, method.image_program(), frame, buffers, state_->options.albedo_mix);
     TextureStats stats = method.scatter(run);
     stats.total_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
     return stats;
+  });
+}
+
+Event TexturePlan::enqueue(const TextureFrame& frame, cl_command_queue queue,
+                           std::span<const cl_event> wait_for) const {
+  const auto images = check_texture(frame, state_->description);
+  check_enqueued(queue, images);
+  return with_device_errors([&] {
+    CommandChain commands(cl::CommandQueue(queue, true), wait_for);
+    const TextureBuffers buffers(state_->device, commands.queue(), frame, images);
+    const TextureScatter& method = *state_->method;
+    TextureRun run(state_->device, commands, method.image_program(), frame, buffers, state_->options.albedo_mix);
+    method.enqueue(run);
+    return commands.hand_over();
   });
 }
 

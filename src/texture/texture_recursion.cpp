@@ -5,7 +5,6 @@
 #include <span>
 
 #include "opencl/device_buffer.hpp"
-#include "opencl/memory_pool.hpp"
 #include "texture/texture_scatter.hpp"
 
 namespace dermis {
@@ -58,8 +57,10 @@ std::array<params::PoleParams, 2> make_pole_tables(const Recursion& recursion, d
 
 struct RecursionMemory {
   TextureSizes sizes;
-  TexturePlanes planes;  ///< the scattered light takes the place of the light
-  cl::Buffer between;    ///< after the pass along u: main function and correction of each texel, four floats each
+  TexturePlanes planes;      ///< the scattered light takes the place of the light
+  cl::Buffer between;        ///< after the pass along u: main function and correction of each texel, four floats each
+  double mm_per_texel = -1;  ///< that the poles are for; none yet
+  std::array<cl::Buffer, 2> poles;  ///< of the pass along u, then along v
 
   RecursionMemory(const Device& device, const TextureSizes& wanted)
       : sizes(wanted),
@@ -77,22 +78,33 @@ class TextureRecursion final : public TextureScatter {
         lines_per_item_(item_is_pixel(device) ? 1 : 8) {}
 
   double predicted_rel_l2() const override { return recursion_.predicted_rel_l2; }
-  TextureStats scatter(TextureRun& run) const override;
+  TextureStats scatter(TextureRun& run) const override {
+    return scatter_with(memories_, run, [&](auto& its_run, auto& memory) { launch(its_run, memory); });
+  }
+  void enqueue(TextureRun& run) const override {
+    enqueue_with(memories_, run, [&](auto& its_run, auto& memory) { launch(its_run, memory); });
+  }
 
  private:
+  void launch(TextureRun& run, RecursionMemory& memory) const;
+
   Recursion recursion_;
   cl::Program passes_;
   mutable MemoryPool<RecursionMemory> memories_;
   int lines_per_item_;
 };
 
-TextureStats TextureRecursion::scatter(TextureRun& run) const {
-  const BorrowedMemory<RecursionMemory> borrowed(memories_, run.device(), run.queue(), run.sizes());
-  const RecursionMemory& memory = *borrowed;
+void TextureRecursion::launch(TextureRun& run, RecursionMemory& memory) const {
+  if (memory.mm_per_texel != run.mm_per_texel()) {
+    const std::array<params::PoleParams, 2> tables = make_pole_tables(recursion_, run.mm_per_texel());
+    memory.mm_per_texel = run.mm_per_texel();
+    for (std::size_t pass = 0; pass < 2; ++pass) {
+      memory.poles[pass] = upload(run.context(), std::span(tables).subspan(pass, 1));
+    }
+  }
   run.prepare(memory.planes);
-  const std::array<params::PoleParams, 2> tables = make_pole_tables(recursion_, run.mm_per_texel());
   for (const bool along_v : {false, true}) {
-    const cl::Buffer poles = upload(run.context(), std::span(tables).subspan(along_v ? 1 : 0, 1));
+    const cl::Buffer& poles = memory.poles[along_v ? 1 : 0];
     const int lines = along_v ? run.sizes().width : run.sizes().height;
     params::TexturePass pass = run.pass(along_v);
     pass.lines_per_item = lines_per_item_;
@@ -104,7 +116,6 @@ TextureStats TextureRecursion::scatter(TextureRun& run) const {
     run.count_parts(lines);
   }
   run.finish(memory.planes.light);
-  return run.wait(memory.planes);
 }
 
 }  // namespace

@@ -42,11 +42,11 @@ TexturePlanes::TexturePlanes(const Device& device, const TextureSizes& sizes, in
       finest(device_buffer(device, "finest stretches", 2 * sizes.blocks() * sizeof(float))),
       counters(device_buffer(device, "counters", TEXTURE_COUNTERS * sizeof(cl_int))) {}
 
-TextureRun::TextureRun(const Device& device, const cl::CommandQueue& queue, const cl::Program& image_program,
+TextureRun::TextureRun(const Device& device, CommandChain& commands, const cl::Program& image_program,
                        const TextureFrame& frame, const TextureBuffers& images, double albedo_mix)
     : device_(device),
-      queue_(queue),
-      context_(queue.getInfo<CL_QUEUE_CONTEXT>()),
+      commands_(commands),
+      context_(device.context(), true),
       image_program_(image_program),
       images_(images),
       sizes_{frame.width, frame.height},
@@ -66,7 +66,7 @@ const cl::Buffer& TextureRun::stretch(bool along_v) const {
 }
 
 void TextureRun::launch(Step step, const cl::Kernel& kernel, const Grid& grid) {
-  events_[static_cast<std::size_t>(step)].push_back(enqueue(queue_, kernel, grid));
+  events_[static_cast<std::size_t>(step)].push_back(commands_.launch(kernel, grid));
 }
 
 void TextureRun::launch_blocks(Step step, const cl::Kernel& kernel) {
@@ -75,9 +75,8 @@ void TextureRun::launch_blocks(Step step, const cl::Kernel& kernel) {
 }
 
 void TextureRun::prepare(const TexturePlanes& planes) {
-  queue_.enqueueFillBuffer(planes.counters, cl_int{0}, 0, COUNTER_FINEST * sizeof(cl_int));
-  queue_.enqueueFillBuffer(planes.counters, std::numeric_limits<cl_int>::max(), COUNTER_FINEST * sizeof(cl_int),
-                           sizeof(cl_int));
+  commands_.fill(planes.counters, cl_int{0}, 0, COUNTER_FINEST * sizeof(cl_int));
+  commands_.fill(planes.counters, std::numeric_limits<cl_int>::max(), COUNTER_FINEST * sizeof(cl_int), sizeof(cl_int));
   cl::Kernel kernel(image_program_, "texture_prepare");
   set_arguments(kernel, params_, images_.layouts(), images_.buffer(TextureImage::light),
                 images_.buffer(TextureImage::albedo), images_.buffer(TextureImage::mask),
@@ -98,7 +97,7 @@ void TextureRun::finish(const cl::Buffer& scattered) {
 TextureStats TextureRun::wait(const TexturePlanes& planes) const {
   images_.read_back();
   std::array<cl_int, TEXTURE_COUNTERS> counters{};
-  queue_.enqueueReadBuffer(planes.counters, CL_TRUE, 0, sizeof(counters), counters.data());
+  commands_.queue().enqueueReadBuffer(planes.counters, CL_TRUE, 0, sizeof(counters), counters.data());
   TextureStats stats;
   stats.prepare_ms = milliseconds_of(Step::prepare);
   stats.scatter_ms = milliseconds_of(Step::scatter);

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "opencl/grid.hpp"
+#include "opencl/command_chain.hpp"
 #include "opencl/opencl.hpp"
 #include "texture/texture_images.hpp"
 
@@ -37,19 +37,19 @@ struct TexturePlanes {
 
 inline int parts_of(int whole, int part) { return (whole + part - 1) / part; }
 
-/// One texture on one queue. Each call puts work on the queue, to start after the work before it; none blocks but
-/// `wait`.
+/// One texture on one queue. Each call adds to its commands; none blocks but `wait`.
 class TextureRun {
  public:
   enum class Step { prepare, scatter, finish };
 
-  /// `image_program` has texture_prepare.cl and texture_finish.cl. The images outlive the run.
-  TextureRun(const Device& device, const cl::CommandQueue& queue, const cl::Program& image_program,
-             const TextureFrame& frame, const TextureBuffers& images, double albedo_mix);
+  /// `image_program` has texture_prepare.cl and texture_finish.cl. The commands and the images outlive the
+  /// run.
+  TextureRun(const Device& device, CommandChain& commands, const cl::Program& image_program, const TextureFrame& frame,
+             const TextureBuffers& images, double albedo_mix);
 
   const Device& device() const { return device_; }
   const cl::Context& context() const { return context_; }
-  const cl::CommandQueue& queue() const { return queue_; }
+  CommandChain& commands() { return commands_; }
   const TextureSizes& sizes() const { return sizes_; }
   const params::TextureParams& params() const { return params_; }
 
@@ -81,7 +81,7 @@ class TextureRun {
   double milliseconds_of(Step step) const { return milliseconds(events_[static_cast<std::size_t>(step)]); }
 
   Device device_;
-  cl::CommandQueue queue_;
+  CommandChain& commands_;
   cl::Context context_;
   const cl::Program& image_program_;
   const TextureBuffers& images_;

@@ -3,8 +3,10 @@
 
 #include <memory>
 #include <string>
+#include <utility>
 
 #include "dermis/texture.hpp"
+#include "opencl/memory_pool.hpp"
 #include "texture/texture_run.hpp"
 
 namespace dermis {
@@ -23,6 +25,8 @@ class TextureScatter {
 
   /// Takes one texture from the caller's images to the outputs, and waits for it. For several threads.
   virtual TextureStats scatter(TextureRun& run) const = 0;
+  /// The same without waiting; textures that are enqueued go one after the other.
+  virtual void enqueue(TextureRun& run) const = 0;
 
  protected:
   /// `interleaved`: the light has a float4 for each texel, whose w says whether the texel is of an object, instead of
@@ -32,6 +36,22 @@ class TextureScatter {
   /// Passes see neither albedo nor mask, and are the same with and without.
   static cl::Program build_passes(const Device& device, const TextureDescription& images, const char* file,
                                   const std::string& constants);
+
+  /// scatter and enqueue of a method that launches all by launch(run, memory), with `planes` in its memory.
+  template <class Memory, class Launch>
+  static TextureStats scatter_with(MemoryPool<Memory>& memories, TextureRun& run, const Launch& launch) {
+    const BorrowedMemory<Memory> memory(memories, run.device(), run.commands().queue(), run.sizes());
+    launch(run, *memory);
+    return run.wait((*memory).planes);
+  }
+  template <class Memory, class Launch>
+  static void enqueue_with(MemoryPool<Memory>& memories, TextureRun& run, const Launch& launch) {
+    auto lent = memories.take_in_turn(run.device(), run.sizes());
+    run.commands().wait_for(lent.used_until);
+    launch(run, *lent.memory);
+    lent.used_until = run.commands().last();
+    memories.give_back(std::move(lent));
+  }
 
  private:
   cl::Program image_program_;

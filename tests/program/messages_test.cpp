@@ -1,4 +1,5 @@
 // Notes, warnings and errors: where they are said, and what --strict and --quiet make of them.
+#include <algorithm>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
@@ -8,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "arguments/device_arguments.hpp"
 #include "program/made_picture.hpp"
 #include "program/run_program.hpp"
 #include "support/catch.hpp"
@@ -100,6 +102,30 @@ TEST_CASE("--device takes the kind that devices prints") {
   check_refused(run_program(filter_arguments(call.scene, call.folder / "x.exr",
                                              {"--material", "1=wax", "--quiet", "--device", "FPGA"})),
                 7, {"FPGA"});
+}
+
+TEST_CASE("a device that was chosen is named, and one that cannot reuse frames says so") {
+  dermis::DeviceInfo gpu;
+  gpu.name = "Quick 9000";
+  gpu.type = "GPU";
+  dermis::DeviceInfo cpu;
+  cpu.name = "Old 1";
+  cpu.type = "CPU";
+  using dermis::program::device_notes;
+  using Notes = std::vector<std::string>;
+  CHECK(device_notes(true, gpu, 3, false).empty());
+  CHECK(device_notes(false, cpu, 1, true).empty());
+  CHECK(device_notes(false, gpu, 3, false) == Notes{"device: Quick 9000, the first GPU of 3 devices (--device)"});
+  CHECK(device_notes(false, cpu, 2, true) == Notes{"device: Old 1, the first one of 2 devices (--device)"});
+  CHECK(device_notes(true, gpu, 1, true) ==
+        Notes{"--reuse: does nothing on Quick 9000, for a GPU filters all of every frame"});
+}
+
+TEST_CASE("devices --test compares each with the oracle") {
+  const std::string listed = run_well({"devices"});
+  const std::string tested = run_well({"devices", "--test"});
+  CHECK(std::count(tested.begin(), tested.end(), '\n') == std::count(listed.begin(), listed.end(), '\n'));
+  CHECK(has(tested, "0  " + listed.substr(3, listed.find(": ") - 3) + ": right: separable 0."));
 }
 
 TEST_CASE("a pixelAspectRatio that no picture can have is named") {

@@ -66,7 +66,7 @@ std::vector<float> alone(const Plan& plan, Shot shot) {
 
 }  // namespace
 
-TEST_CASE("a frame that follows another has the same bits as by itself", "[reuse]") {
+TEST_CASE("a frame that follows another has the same bits as by itself", "[reuse][tiles]") {
   const Device device = Device::open();
   Random random(900);
   Shot shot(random);

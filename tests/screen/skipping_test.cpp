@@ -16,7 +16,7 @@ using dermis::Plan;
 using dermis::Stats;
 using dermis::TileKind;
 
-TEST_CASE("pixels without material and narrow kernels keep their bits and are counted", "[skipping]") {
+TEST_CASE("pixels without material and narrow kernels keep their bits and are counted", "[skipping][tiles]") {
   const Device device = Device::open();
   constexpr int width = 200;
   constexpr int height = 70;
@@ -82,7 +82,7 @@ TEST_CASE("pixels without material and narrow kernels keep their bits and are co
   CHECK(changed > 10000);
 }
 
-TEST_CASE("where little of the frame scatters its tiles are lower, and the light is the same", "[skipping]") {
+TEST_CASE("where little of the frame scatters its tiles are lower, and the light is the same", "[skipping][tiles]") {
   const Device device = Device::open("", 1);
   constexpr int width = 530;
   constexpr int height = 1030;

@@ -1,6 +1,9 @@
 #include "arguments/device_arguments.hpp"
 
+#include <fmt/format.h>
+
 #include <cstdint>
+#include <cstdlib>
 #include <limits>
 
 #include "arguments/number_argument.hpp"
@@ -25,10 +28,25 @@ Device open_device(const DeviceArguments& arguments) {
   return Device::open(arguments.name, arguments.threads);
 }
 
+std::vector<std::string> device_notes(bool is_named, const DeviceInfo& taken, std::size_t there_are, bool reuses) {
+  std::vector<std::string> notes;
+  if (!is_named && there_are > 1)
+    notes.push_back(fmt::format("device: {}, the first {} of {} devices (--device)", taken.name,
+                                taken.type == "GPU" ? "GPU" : "one", there_are));
+  if (reuses && taken.type == "GPU")
+    notes.push_back(fmt::format("--reuse: does nothing on {}, for a GPU filters all of every frame", taken.name));
+  return notes;
+}
+
+bool is_device_named(const DeviceArguments& arguments) {
+  const char* from_environment = std::getenv("DERMIS_DEVICE");
+  return !arguments.name.empty() || (from_environment != nullptr && *from_environment != '\0');
+}
+
 void add_device_argument(CLI::App& app, std::string& name) {
   app.add_option("--device", name,
                  "number, kind (CPU, GPU) or part of the name of a device, see `dermis devices`; else DERMIS_DEVICE, "
-                 "else the first")
+                 "else the first GPU, else the first")
       ->type_name("NAME");
 }
 

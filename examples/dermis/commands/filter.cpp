@@ -14,6 +14,7 @@
 
 #include "arguments/bad_pixels_argument.hpp"
 #include "arguments/config_file.hpp"
+#include "arguments/device_arguments.hpp"
 #include "arguments/profile_argument.hpp"
 #include "commands/commands.hpp"
 #include "commands/filter_job.hpp"
@@ -268,6 +269,9 @@ ViewResult filter_view(const FilterJob& job, const PictureFiles& files, SurfaceI
   }
 
   const Device& device = session.device();
+  for (const std::string& note :
+       device_notes(is_device_named(job.device), device.info(), Device::list().size(), job.reuse))
+    messages.note(note);
   const Plan* plan = nullptr;
   try {
     const ChosenTaps taps = choose_taps_for(job, pixels, input.lighting, messages);

@@ -160,6 +160,9 @@ void filter_texture(const TextureArguments& arguments, const PictureFiles& files
 
   const TextureDescription description = TextureDescription::of(frame);
   if (!session.device) session.device.emplace(open_device(arguments.device));
+  for (const std::string& note :
+       device_notes(is_device_named(arguments.device), session.device->info(), Device::list().size(), false))
+    messages.note(note);
   if (!session.plan || !(session.description == description)) {
     session.plan.emplace(*session.device, profile, description, arguments.options);
     session.description = description;
