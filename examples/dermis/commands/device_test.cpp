@@ -29,6 +29,7 @@ std::vector<oracle::Material> oracle_materials(const std::vector<Material>& mate
   for (const Material& material : materials) {
     const Profile& profile = material.profile;
     result.push_back({.id = material.id,
+                      .albedo_width = profile.albedo_width(),
                       .taps = make_taps(profile, taps),
                       .radial = [profile](int c, double r_mm) { return profile.radial(c, r_mm); },
                       .cdf = [profile](int c, double r_mm) { return profile.cdf(c, r_mm); }});
