@@ -55,7 +55,10 @@ class Arrays(unittest.TestCase):
         self.assertIs(result.scattered, out)
         np.testing.assert_allclose(out, self.expected, rtol=1e-3)
         beauty = np.zeros((HEIGHT, WIDTH, 3), np.float32)
-        with_beauty = self.plan.run(CAMERA, 0.5, light=stripe(), depth=depth(), beauty=beauty)
+        white = np.ones_like(beauty)
+        with_albedo = dermis.Plan("burley:1/0.6/0.4", images=["depth", "albedo"], rank=2, taps=11)
+        with_beauty = with_albedo.run(CAMERA, 0.5, light=stripe(), depth=depth(), albedo=white, beauty=beauty)
+        np.testing.assert_array_equal(with_beauty.scattered, self.expected)
         np.testing.assert_allclose(with_beauty.result, self.expected - stripe(), atol=1e-6)
         self.assertEqual(result.stats["pixels_scattered"], WIDTH * HEIGHT)
 
@@ -126,7 +129,9 @@ class Profiles(unittest.TestCase):
         skin = dermis.Profile("skin")
         r = np.linspace(0.1, 3, 6).reshape(2, 3)
         self.assertEqual(skin.radial(r).shape, (2, 3, 3))
-        np.testing.assert_allclose(skin.cdf(skin.radius([0.3, 0.9])), np.repeat([[0.3], [0.9]], 3, axis=1), rtol=1e-8)
+        radius = skin.radius([0.3, 0.9])
+        for channel in range(3):
+            np.testing.assert_allclose(skin.cdf(radius)[:, channel, channel], [0.3, 0.9], rtol=1e-8)
         np.testing.assert_allclose(skin.edge(0.0), [0.5] * 3)
         self.assertTrue((skin.transmittance(1.0) < 1).all())
         self.assertIn("skin", dermis.presets())
