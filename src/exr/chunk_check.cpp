@@ -20,6 +20,9 @@ constexpr std::uint8_t none = 0;
 constexpr std::uint8_t rle = 1;
 constexpr std::uint8_t zips = 2;
 constexpr std::uint8_t zip = 3;
+constexpr std::uint8_t dwaa = 8;
+constexpr std::uint8_t dwab = 9;
+constexpr std::array decoded = {rle, zips, zip, dwaa, dwab};  // to see what they hold
 
 /// The most that a byte can stand for: a run of RLE takes two bytes for 128, a match of zlib two bits for 258.
 constexpr std::uint64_t most_rle = 64;
@@ -65,25 +68,6 @@ std::uint64_t size_of_rle(std::string_view packed) {
   return size;
 }
 
-/// True for a whole stream of zlib that holds so many bytes.
-bool is_zip_of(const std::string& packed, std::uint64_t wanted) {
-  z_stream stream = {};
-  if (::inflateInit(&stream) != Z_OK) return false;
-  std::array<Bytef, 1 << 15> part;
-  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(packed.data()));
-  stream.avail_in = static_cast<uInt>(packed.size());
-  std::uint64_t size = 0;
-  int status = Z_OK;
-  while (status == Z_OK && size <= wanted) {
-    stream.next_out = part.data();
-    stream.avail_out = static_cast<uInt>(part.size());
-    status = ::inflate(&stream, Z_NO_FLUSH);
-    size += part.size() - stream.avail_out;
-  }
-  ::inflateEnd(&stream);
-  return status == Z_STREAM_END && size == wanted;
-}
-
 class PartCheck {
  public:
   PartCheck(const std::filesystem::path& path, const File& file, const ChunkGrid& grid, std::uint64_t table, int number)
@@ -95,7 +79,7 @@ class PartCheck {
 
   /// Each thread takes some of the chunks. Where there can be no more threads, one takes them all.
   void run() const {
-    const bool decodes = grid_.compression == rle || grid_.compression == zips || grid_.compression == zip;
+    const bool decodes = std::find(decoded.begin(), decoded.end(), grid_.compression) != decoded.end();
     const std::size_t workers = decodes ? std::clamp<std::size_t>(std::thread::hardware_concurrency(), 1, 64) : 1;
     std::vector<std::future<void>> work;
     for (std::size_t worker = 0; worker < workers; ++worker) {
@@ -135,27 +119,34 @@ class PartCheck {
     const std::string head = file_.bytes(offset, 4 * (place.size() + 1));
     for (std::size_t i = 0; i < place.size(); ++i)
       if (static_cast<std::int32_t>(u32(head, 4 * i)) != place[i]) fail(chunk, "in the place of another");
-    const std::uint64_t pixels = std::min(grid_.chunk_width, grid_.width - column * grid_.chunk_width) *
-                                 std::min(grid_.chunk_height, grid_.height - row * grid_.chunk_height);
+    const std::uint64_t width = std::min(grid_.chunk_width, grid_.width - column * grid_.chunk_width);
+    const std::uint64_t height = std::min(grid_.chunk_height, grid_.height - row * grid_.chunk_height);
     const std::uint32_t stored = u32(head, 4 * place.size());
-    const std::uint64_t wanted = pixels * grid_.pixel_bytes;
+    const Wanted wanted = {width, height, width * height * grid_.pixel_bytes()};
     if (!has_pixels(offset + head.size(), stored, wanted))
-      fail(chunk, "in " + std::to_string(stored) + " bytes that do not hold its " + std::to_string(wanted));
+      fail(chunk, "in " + std::to_string(stored) + " bytes that do not hold its " + std::to_string(wanted.bytes));
   }
 
+  struct Wanted {
+    std::uint64_t width, height, bytes;
+  };
+
   /// What would not become smaller is stored as it is.
-  bool has_pixels(std::uint64_t first, std::uint32_t stored, std::uint64_t wanted) const {
-    if (stored == 0 || stored > wanted) return false;
+  bool has_pixels(std::uint64_t first, std::uint32_t stored, const Wanted& wanted) const {
+    if (stored == 0 || stored > wanted.bytes) return false;
     const std::string last = file_.bytes(first + stored - 1, 1);  // or it ends before
-    if (stored == wanted) return true;
+    if (stored == wanted.bytes) return true;
     switch (grid_.compression) {
       case none:
         return false;
       case rle:
-        return wanted / stored <= most_rle && size_of_rle(file_.bytes(first, stored)) == wanted;
+        return wanted.bytes / stored <= most_rle && size_of_rle(file_.bytes(first, stored)) == wanted.bytes;
       case zips:
       case zip:
-        return wanted / stored <= most_zip && is_zip_of(file_.bytes(first, stored), wanted);
+        return is_zip_of(file_.bytes(first, stored), wanted.bytes);
+      case dwaa:
+      case dwab:
+        return has_dwa_parts(file_.bytes(first, stored), grid_.channels, wanted.width, wanted.height);
       default:
         return true;
     }
@@ -169,6 +160,25 @@ class PartCheck {
 };
 
 }  // namespace
+
+bool is_zip_of(std::string_view packed, std::uint64_t wanted) {
+  if (packed.empty() || wanted / packed.size() > most_zip) return false;
+  z_stream stream = {};
+  if (::inflateInit(&stream) != Z_OK) return false;
+  std::array<Bytef, 1 << 15> part;
+  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(packed.data()));
+  stream.avail_in = static_cast<uInt>(packed.size());
+  std::uint64_t size = 0;
+  int status = Z_OK;
+  while (status == Z_OK && size <= wanted) {
+    stream.next_out = part.data();
+    stream.avail_out = static_cast<uInt>(part.size());
+    status = ::inflate(&stream, Z_NO_FLUSH);
+    size += part.size() - stream.avail_out;
+  }
+  ::inflateEnd(&stream);
+  return status == Z_STREAM_END && size == wanted;
+}
 
 void check_chunks(const std::filesystem::path& path, const std::vector<ChunkGrid>& parts, std::uint64_t tables,
                   bool has_part_numbers) {

@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <set>
 #include <string>
+#include <utility>
 
 #include "dermis/error.hpp"
 #include "exr/message_text.hpp"
@@ -55,16 +56,6 @@ struct Box {
   std::int64_t height;
 };
 
-struct ChannelSum {
-  std::size_t count = 0;
-  std::uint64_t pixel_bytes = 0;
-};
-
-struct PartSize {
-  ChunkGrid grid;
-  std::size_t channels;
-};
-
 void check_channel_count(const std::filesystem::path& path, std::size_t channels) {
   if (channels == 0 || channels > static_cast<std::size_t>(max_channels))
     refuse(path, std::to_string(channels) + " channels", "1 to " + std::to_string(max_channels));
@@ -76,14 +67,14 @@ class HeaderCheck {
   HeaderCheck(const std::filesystem::path& path, const Header& attributes, std::uint32_t flags)
       : path_(path), attributes_(attributes), flags_(flags) {}
 
-  PartSize run() const {
+  ChunkGrid run() const {
     if (const HeaderAttribute* type = find("type"); type != nullptr && type->value.starts_with("deep")) {
       refuse(path_, "a deep picture", "a flat one");
     }
     box("displayWindow");
-    const ChannelSum channels = add_channels();
+    std::vector<ChunkChannel> channels = channels_in_list();
     check_pixel_aspect();
-    return {grid_of(box("dataWindow"), channels.pixel_bytes), channels.count};
+    return grid_of(box("dataWindow"), std::move(channels));
   }
 
  private:
@@ -117,23 +108,22 @@ class HeaderCheck {
   }
 
   /// A channel list is, for each channel: name, 0, type (4), flags (4), sampling in x (4) and y (4); then a 0.
-  ChannelSum add_channels() const {
+  std::vector<ChunkChannel> channels_in_list() const {
     std::string_view list = value_of("channels", "chlist", 1);
     std::set<std::string_view> names;
-    ChannelSum sum;
+    std::vector<ChunkChannel> channels;
     while (!list.empty() && list[0] != '\0') {
       const std::size_t end = list.find('\0');
       if (end > max_name || list.size() < end + 17) damaged(path_, "channels");
       const std::string_view name = list.substr(0, end);
       if (!names.insert(name).second) damaged(path_, "channel " + escaped(name) + " twice");
       check_channel(name, list.substr(end + 1, 16));
-      sum.pixel_bytes += little_endian(list.substr(end + 1)) == half_type ? 2 : 4;
+      channels.push_back({std::string(name), little_endian(list.substr(end + 1))});
       list.remove_prefix(end + 17);
     }
     if (list.size() != 1) damaged(path_, "channels");
-    sum.count = names.size();
-    check_channel_count(path_, sum.count);
-    return sum;
+    check_channel_count(path_, channels.size());
+    return channels;
   }
 
   void check_pixel_aspect() const {
@@ -158,14 +148,14 @@ class HeaderCheck {
     return value_of("type", "string", 1) == "tiledimage";
   }
 
-  ChunkGrid grid_of(const Box& data, std::uint64_t pixel_bytes) const {
+  ChunkGrid grid_of(const Box& data, std::vector<ChunkChannel> channels) const {
     const char compression = value_of("compression", "compression", 1)[0];
     ChunkGrid grid{.width = static_cast<std::uint64_t>(data.width),
                    .height = static_cast<std::uint64_t>(data.height),
                    .first_row = data.y,
                    .chunk_width = static_cast<std::uint64_t>(data.width),
                    .chunk_height = rows_of_chunk(compression),
-                   .pixel_bytes = pixel_bytes,
+                   .channels = std::move(channels),
                    .compression = static_cast<std::uint8_t>(compression),
                    .has_tiles = has_tiles(),
                    .chunks_of_smaller_levels = 0};
@@ -262,10 +252,9 @@ std::vector<ChunkGrid> check_headers(const std::filesystem::path& path, const st
   std::uint64_t chunks = 0;
   std::size_t channels = 0;
   for (const Header& part : parts) {
-    const PartSize size = HeaderCheck(path, part, flags).run();
-    grids.push_back(size.grid);
-    chunks += size.grid.columns() * size.grid.rows();
-    channels += size.channels;
+    grids.push_back(HeaderCheck(path, part, flags).run());
+    chunks += grids.back().columns() * grids.back().rows();
+    channels += grids.back().channels.size();
   }
   check_channel_count(path, channels);
   if (file_bytes / smallest_chunk_bytes < chunks) {

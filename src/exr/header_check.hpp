@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "exr/dwa_check.hpp"
 #include "exr/header.hpp"
 
 namespace dermis::exr {
@@ -27,12 +28,17 @@ struct ChunkGrid {
   std::int64_t first_row;  ///< of the data window
   std::uint64_t chunk_width;
   std::uint64_t chunk_height;
-  std::uint64_t pixel_bytes;
+  std::vector<ChunkChannel> channels;
   std::uint8_t compression;  ///< as files number it
   bool has_tiles;
   std::uint64_t chunks_of_smaller_levels;  ///< of a mip map, which nobody reads
 
   std::uint64_t columns() const { return (width + chunk_width - 1) / chunk_width; }
+  std::uint64_t pixel_bytes() const {
+    std::uint64_t sum = 0;
+    for (const ChunkChannel& channel : channels) sum += channel.bytes();
+    return sum;
+  }
   std::uint64_t rows() const { return (height + chunk_height - 1) / chunk_height; }
 };
 

@@ -195,6 +195,46 @@ TEST_CASE("a whole stream that decodes to too little or too much is refused", "[
   require_refused(folder, file_of(1, {run_lengths(row_bytes), "\x01", "\x01", "\x01"}, 1), "block 1 of pixels in");
 }
 
+TEST_CASE("a block of DWA whose own sizes are wrong is refused, or read as it was", "[chunks]") {
+  Random random(44);
+  const TemporaryFolder folder;
+  const PatternOnHeap pattern;
+  const std::string good = picture_of("dwaa", false);
+  const Planes planes = planes_of(folder, good);
+  const std::size_t chunk = u32(good, table_of(good)) + 8;
+  for (std::size_t number = 0; number < 11; ++number) {
+    const std::size_t place = chunk + 8 * number;
+    const std::uint32_t size = u32(good, place);
+    std::set<std::uint32_t> others = {0, 1, size / 2, size - 1, size + 1, 0xFFFFFFFF};
+    for (int i = 0; i < 5; ++i) others.insert(static_cast<std::uint32_t>(random.integer(0, 5000)));
+    others.erase(size);
+    for (const std::uint32_t other : others) {
+      INFO("number " << number << ": " << other << " for " << size);
+      std::string bad = good;
+      bad.replace(place, 4, raw_exr::u32(other));
+      Planes read;
+      const Failure failure = failure_of([&] { read = planes_of(folder, bad); });
+      if (failure.code)
+        REQUIRE(failure.code == ErrorCode::input_unsupported);
+      else
+        REQUIRE(read == planes);
+    }
+  }
+  // One channel of floats, which is stored as it is, packed.
+  constexpr std::size_t row_bytes = 64 * 4;
+  const auto dwa = [](std::size_t said, std::size_t held) {
+    const std::string packed = zipped(std::string(held, '\0'));
+    std::string block = u64(2) + u64(said) + u64(packed.size());
+    for (int i = 0; i < 8; ++i) block += u64(0);
+    return file_of(8, {block + std::string("\2\0", 2) + packed}, 4);
+  };
+  REQUIRE(planes_of(folder, dwa(4 * row_bytes, 4 * row_bytes)) == Planes{{"Y", std::vector<float>(64 * 4, 0.0F)}});
+  for (const std::size_t bytes : {std::size_t{0}, std::size_t{1}, row_bytes, 4 * row_bytes - 1}) {
+    require_refused(folder, dwa(4 * row_bytes, bytes), "block 0 of pixels in");
+    require_refused(folder, dwa(bytes, bytes), "block 0 of pixels in");
+  }
+}
+
 TEST_CASE("chunks that are missing, exchanged or elsewhere are refused", "[chunks]") {
   const TemporaryFolder folder;
   const PatternOnHeap pattern;
