@@ -18,8 +18,6 @@ using dermis::exr::Picture;
 
 namespace {
 
-bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
-
 /// A scene, and a copy in which one value is off.
 struct Pair {
   TemporaryFolder folder;

@@ -87,8 +87,6 @@ std::vector<float> noise(Random& random, std::size_t pixels) {
   return factors;
 }
 
-bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
-
 std::vector<float> beauty_of(const std::string& path) {
   const Picture picture = Picture::read(path);
   std::vector<float> all;

@@ -24,8 +24,6 @@ namespace {
 
 const std::string sample = std::string(DERMIS_DATA) + "/monkey_gbuffer.exr";
 
-bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
-
 std::map<int, int> count_ids(const std::string& path) {
   std::map<int, int> counts;
   for (const float id : Picture::read(path).plane("ViewLayer.IndexMA.X")) ++counts[static_cast<int>(id)];

@@ -20,8 +20,6 @@ using Words = std::vector<std::string>;
 
 namespace {
 
-bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
-
 /// A scene with a pass "sss" of the renderer's, which a note is about; the warning is about a material.
 struct Talkative {
   TemporaryFolder folder;

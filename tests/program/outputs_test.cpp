@@ -26,8 +26,6 @@ using Words = std::vector<std::string>;
 
 namespace {
 
-bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
-
 struct Made {
   TemporaryFolder folder;
   MadeScene scene = make_scene(folder / "in.exr", "touching", 30, 20, 3);

@@ -21,8 +21,6 @@ using namespace dermis::program;
 
 namespace {
 
-bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
-
 /// An environment without a home, whose temporary folder is `temporary`.
 void leave_home(const std::string& temporary) {
   for (const char* name : {"HOME", "XDG_CACHE_HOME", "POCL_CACHE_DIR"}) unsetenv(name);

@@ -23,8 +23,6 @@ namespace {
 const Words both_materials = {"--material", "1=skin", "--material", "2=wax"};
 const std::string layer = "ViewLayer.";
 
-bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
-
 void write_text(const std::string& path, const std::string& text) { std::ofstream(path) << text; }
 
 /// Two materials, and the picture in which they are scattered by their ids.

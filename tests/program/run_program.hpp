@@ -11,6 +11,9 @@ struct Outcome {
   std::string input;   // lines of stderr that say what was taken from the picture
 };
 
+/// True if a text has such a part.
+inline bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
 /// True for a line of stderr "dermis: input: ...", or that a kernel is larger than the picture, as it often is in
 /// pictures that are made small to be quick.
 bool is_input(const std::string& line);

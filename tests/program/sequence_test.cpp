@@ -65,11 +65,11 @@ namespace {
 
 /// Frames: one as it should be, one of background only, one of another material, one cut in half, one that no camera
 /// fits, and the first one again.
-struct Shot {
+struct Sequence {
   TemporaryFolder folder;
   MadeScene scene = make_scene(folder / "1.exr", "sphere", 60, 40, 3);
 
-  Shot() {
+  Sequence() {
     const std::size_t pixels = std::size_t{60} * 40;
     PictureCopy empty(scene.path);
     empty.with("ViewLayer.Depth.Z", std::vector<float>(pixels, 1e10F));
@@ -92,12 +92,10 @@ struct Shot {
   }
 };
 
-bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
-
 }  // namespace
 
 TEST_CASE("frames that fail are named, and the others are done") {
-  const Shot shot;
+  const Sequence shot;
   const Outcome outcome = shot.filter("123456");
   INFO(outcome.errors);
   CHECK(outcome.exit_code == 4);
@@ -111,7 +109,7 @@ TEST_CASE("frames that fail are named, and the others are done") {
 }
 
 TEST_CASE("a frame in which nothing scatters is copied, without a camera") {
-  const Shot shot;
+  const Sequence shot;
   const Outcome outcome = shot.filter("123");
   INFO(outcome.errors);
   CHECK(outcome.exit_code == 0);
@@ -129,7 +127,7 @@ TEST_CASE("a frame in which nothing scatters is copied, without a camera") {
 }
 
 TEST_CASE("one picture in which nothing scatters is an error, unless that is allowed") {
-  const Shot shot;
+  const Sequence shot;
   check_refused(shot.filter("3"), 5, {"--material: got 1", "the ids in the picture are 9", "--allow-empty"});
   check_refused(shot.filter("2"), 5, {"--material: got 1", "--allow-empty"});
   CHECK(fs::is_empty(shot.folder / "out"));
@@ -138,7 +136,7 @@ TEST_CASE("one picture in which nothing scatters is an error, unless that is all
 }
 
 TEST_CASE("a folder does for one picture, as for several") {
-  const Shot shot;
+  const Sequence shot;
   CHECK(shot.filter("1", {"--stats-json", shot.folder / "out"}).exit_code == 0);
   CHECK(fs::exists(shot.folder / "out/1.exr"));
   CHECK(fs::exists(shot.folder / "out/1.json"));

@@ -27,8 +27,6 @@ const std::string layer = "ViewLayer.";
 constexpr std::array colours = {".R", ".G", ".B"};
 constexpr std::array axes = {".X", ".Y", ".Z"};
 
-bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
-
 std::array<std::vector<float>, 3> planes(const Picture& picture, const std::string& pass,
                                          const std::array<const char*, 3>& ends) {
   return {picture.plane(layer + pass + ends[0]), picture.plane(layer + pass + ends[1]),
