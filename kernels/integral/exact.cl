@@ -95,7 +95,9 @@ static inline vrgb integrate(const Surface* surface, const Points* p, const Prof
   const vrgb own_light = load_rgb(w->light, w->plane, at_p);
   const vrgb own = own_share(f, p, profile, load_floats(geometry + at_p), load_floats(geometry + w->plane + at_p),
                              load_floats(geometry + 2 * w->plane + at_p));
-  Sum sum = {product(own, own_light), own};
+  // Weights are in units of the pixel's own: those of small patches, times light, would be 0.
+  const vrgb unit = {1.0f / own.r, 1.0f / own.g, 1.0f / own.b};
+  Sum sum = {own_light, broadcast_rgb((vfloat)(1.0f))};
   const vrgb reciprocal = profile->reciprocal;
   const vfloat widest = 1.0f / fmin(fmin(reciprocal.r, reciprocal.g), reciprocal.b);
   const int2 extent = reach(f, p, mine, profile->reach_mm * widest);
@@ -112,7 +114,7 @@ static inline vrgb integrate(const Surface* surface, const Points* p, const Prof
       const int n = distance <= NEAR_4 ? 4 : distance <= NEAR_2 ? 2 : 1;
       const vrgb average = patch_average(f, p, profile, dx, dy, load_floats(w->depth + at), load_floats(geometry + at),
                                          load_floats(geometry + w->plane + at), n);
-      const vrgb density = product(average, product(reciprocal, reciprocal));
+      const vrgb density = product(product(average, product(reciprocal, reciprocal)), unit);
       const vrgb weight = select_or_zero_rgb(same, times(density, load_floats(geometry + 2 * w->plane + at)));
       row.weight = sum_rgb(row.weight, weight);
       row.light = multiply_add(weight, select_or_zero_rgb(same, load_rgb(w->light, w->plane, at)), row.light);
@@ -121,10 +123,11 @@ static inline vrgb integrate(const Surface* surface, const Points* p, const Prof
     sum.light = sum_rgb(sum.light, row.light);
   }
 #if SUMS_WEIGHTS
-  return sum.light;
+  return product(sum.light, own);
 #endif
   const vrgb result = {sum.light.r / sum.weight.r, sum.light.g / sum.weight.g, sum.light.b / sum.weight.b};
-  return result;
+  // Where a pixel is so much larger than its neighbours, or than what the profile reaches, that this is no number.
+  return select_rgb(own_light, result, is_summable(result));
 }
 
 // A work-item has a run of `columns` pixels of a row.
