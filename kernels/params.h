@@ -32,6 +32,13 @@ typedef long long Bytes;
 #define NARROW_BIT 0x80
 #define MAX_MATERIALS 127
 
+// Light beyond this counts as not finite: sums of it, with weights above 1 and below 0, stay within a float.
+#define LARGEST_LIGHT 1e32f
+
+// A surface lies within these distances, mm: areas, the squares of lengths, stay within a float.
+#define NEAREST_MM 1e-15f
+#define FURTHEST_MM 1e15f
+
 // Counters of a run.
 #define COUNTER_NEXT_TILE 0
 #define COUNTER_WORKERS 1

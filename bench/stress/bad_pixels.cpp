@@ -160,8 +160,8 @@ StressRow refused(const Device& device, const std::vector<Material>& materials, 
 }  // namespace
 
 StressRow missing_depth(const StressFilter& deep, const StressField& field, std::mt19937& engine) {
-  StressRow row{.group = "depth", .name = "0, negative, NaN, Inf, 1e10", .promised = "background, keeps bits"};
-  const float values[] = {0, -0.0F, -100, marked_nan(), HUGE_VALF, -HUGE_VALF, 1e9F, background, 3e38F};
+  StressRow row{.group = "depth", .name = "0, negative, NaN, Inf, 1e-30, 1e10", .promised = "background, keeps bits"};
+  const float values[] = {0, -0.0F, -100, 1e-30F, marked_nan(), HUGE_VALF, -HUGE_VALF, 1e9F, background, 3e38F};
   const std::set<std::size_t> pixels = chosen_pixels(field, engine, 20);
   StressField bad = field;
   for (const std::size_t pixel : pixels) {
@@ -189,6 +189,8 @@ void add_bad_light_cases(std::vector<StressRow>& rows, const Device& device, con
   half.format = Format::f16;
   rows.push_back(kept(deep, half, "NaN in half", marked_nan(), engine));
   rows.push_back(kept(deep, half, "1e6, Inf in half", 1e6F, engine));
+  rows.push_back(kept(deep, field, "1e33", 1e33F, engine));
+  rows.push_back(kept(deep, field, "-3e38", -3e38F, engine));
   rows.push_back(all_bad(deep, field));
   // Few taps do: the cases are about pixels.
   const std::vector<Material> materials = {{0, preset("skin").profile}};

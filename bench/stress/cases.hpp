@@ -15,6 +15,7 @@ void add_depth_cases(std::vector<StressRow>& rows, const StressFilter& deep, std
 void add_camera_cases(std::vector<StressRow>& rows, const StressFilter& deep, std::mt19937& engine);
 void add_bad_light_cases(std::vector<StressRow>& rows, const Device& device, const StressFilter& deep,
                          std::mt19937& engine);
+void add_method_cases(std::vector<StressRow>& rows, const Device& device, std::mt19937& engine);
 void add_width_cases(std::vector<StressRow>& rows, const Device& device, std::mt19937& engine);
 
 /// Depth that is none: background.

@@ -23,6 +23,8 @@ std::vector<StressRow> stress_rows(const Device& device, std::uint32_t seed, con
   add_camera_cases(rows, deep, engine);
   report("stress: light that is not finite");
   add_bad_light_cases(rows, device, deep, engine);
+  report("stress: every method");
+  add_method_cases(rows, device, engine);
   report("stress: profiles of any width");
   add_width_cases(rows, device, engine);
   return rows;

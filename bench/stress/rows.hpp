@@ -12,10 +12,10 @@
 // | negative light                              | minus what the light would give, to the bit; mixed signs: 4e-6      |
 // | denormals                                   | the oracle's bound, which lets each product and sum be flushed to 0 |
 // | half in, half out                           | the oracle's bound and half a unit in the last place of the half    |
-// | NaN, Inf in a pixel's light                 | left out of all sums, counted in Stats::pixels_bad, and kept to the |
+// | NaN, Inf, beyond 1e32 in a pixel's light    | left out of all sums, counted in Stats::pixels_bad, and kept to the |
 // |                                             | bit, zeroed or refused (Options::bad_pixels); every other pixel has |
 // |                                             | the bits that it has with background there                          |
-// | depth 0, negative, NaN, +-Inf, 1e10         | background: not counted as bad, keeps its bits, gives no light      |
+// | depth 0, negative, NaN, +-Inf, 1e-30, 1e10  | background: not counted as bad, keeps its bits, gives no light      |
 // | depth that alternates from pixel to pixel   | no light at all across a distance beyond the profile's reach; 4e-6; |
 // |                                             | constant light stays so within the oracle's bound                   |
 // | profiles of 1e-6 to 1e6 mm                  | 4e-6                                                                |
@@ -25,6 +25,9 @@
 // | focal lengths of 1 px and of 1e6 px, a      | 4e-6                                                                |
 // | principal point 1e6 units aside             |                                                                     |
 // | a camera 1e6 units away                     | the oracle's bound: depth in mm is rounded to float32               |
+// | every method (rank 3, exact, disc) at 1e-12 | no NaN or Inf comes out; light that is the same everywhere stays so |
+// | to 1e12 mm per unit, depths of 1e-38 to     | within 1e-4                                                         |
+// | 1e30, light of 1e-30 to 3e38                |                                                                     |
 // | a few lit pixels on a plane, far from edges | the sum over the picture is kept to 1e-5                            |
 //
 // Not promised is the range where depth alternates by more than the profile reaches: a pixel whose only neighbour of

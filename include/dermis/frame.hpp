@@ -105,8 +105,12 @@ struct View {
   std::array<double, 12> to_camera = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
 };
 
-/// One G-buffer. All images have the frame's size. A pixel whose depth is not finite, not above 0 (perspective) or
-/// 1e9 and more is background, and so is one whose light or albedo is not finite: it neither gives nor takes light.
+/// The largest value of light, of either sign. What is beyond counts as not finite.
+inline constexpr float largest_light = 1e32F;
+
+/// One G-buffer. All images have the frame's size. A pixel whose depth is not finite, not above 0 (perspective), 1e9
+/// and more, nearer than 1e-15 mm (perspective) or further than 1e15 mm is background, and so is one whose light or
+/// albedo is not finite: it neither gives nor takes light.
 struct Frame {
   int width = 0;
   int height = 0;

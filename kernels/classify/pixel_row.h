@@ -41,8 +41,9 @@ FORCED_INLINE PixelRow read_row(const struct FrameParams* f, const FrameInputs* 
   row.depth = (vfloat)(0.0f);
 #if HAS_DEPTH
   const vfloat units = read_row_values(row_of(in->depth, &in->layouts->depth, f->width, y, 0), x, direct);
-  row.material &= AS_MASK(units < 1e9f) & AS_MASK(units > (f->slope_x > 0.0f ? 0.0f : -INFINITY));
   row.depth = units * f->mm_per_unit;
+  const float nearest = f->slope_x > 0.0f ? NEAREST_MM : -FURTHEST_MM;
+  row.material &= AS_MASK(units < 1e9f) & AS_MASK(row.depth >= nearest) & AS_MASK(row.depth <= FURTHEST_MM);
 #endif
 #if PIXEL_WIDTH
   row.k = broadcast_rgb((vfloat)(1.0f));

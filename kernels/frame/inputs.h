@@ -54,6 +54,12 @@ FORCED_INLINE vrgb read_albedo(const InputRows* rows, int x) {
 #endif
 }
 
+// Mask of the lanes whose light can be added up.
+FORCED_INLINE vint is_summable(vrgb light) {
+  const vfloat most = (vfloat)(LARGEST_LIGHT);
+  return AS_MASK(fabs(light.r) <= most) & AS_MASK(fabs(light.g) <= most) & AS_MASK(fabs(light.b) <= most);
+}
+
 FORCED_INLINE vint is_finite(vrgb v) {
   // A number that is not finite differs from itself by NaN.
   const vfloat sum = (v.r - v.r) + (v.g - v.g) + (v.b - v.b);

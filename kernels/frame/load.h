@@ -16,9 +16,9 @@ FORCED_INLINE vrgb scattering_light(const struct FrameParams* f, vrgb input, vrg
 
 // Mask of the lanes that have a material, but light or albedo that is not finite.
 FORCED_INLINE vint bad_lanes(vint material_ids, vrgb input, vrgb albedo, vrgb value) {
-  vint good = is_finite(input);
+  vint good = is_summable(input);
 #if HAS_ALBEDO
-  good &= is_finite(albedo) & is_finite(value);
+  good &= is_finite(albedo) & is_summable(value);
 #endif
   return AS_MASK(material_ids != 0) & ~good;
 }

@@ -46,8 +46,14 @@ static inline Vectors tangent_y(const struct FrameParams* f, const Points* p, vf
   return t;
 }
 
-// The area of the patch of a pixel, mm^2: the tangents are its sides.
+// The area of the patch of a pixel, mm^2: the tangents are its sides. It is made of sides of about 1, for the square of
+// a small area would be 0, and that of a large one infinite.
 static inline vfloat patch_area(Vectors x, Vectors y) {
-  const Vectors normal = {x.y * y.z - x.z * y.y, x.z * y.x - x.x * y.z, x.x * y.y - x.y * y.x};
-  return sqrt(squared_length(normal));
+  const vfloat least = (vfloat)(1e-30f);
+  const vfloat size_x = higher(least, higher(fabs(x.x), higher(fabs(x.y), fabs(x.z))));
+  const vfloat size_y = higher(least, higher(fabs(y.x), higher(fabs(y.y), fabs(y.z))));
+  const Vectors a = {x.x / size_x, x.y / size_x, x.z / size_x};
+  const Vectors b = {y.x / size_y, y.y / size_y, y.z / size_y};
+  const Vectors normal = {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+  return sqrt(squared_length(normal)) * size_x * size_y;
 }

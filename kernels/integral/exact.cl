@@ -139,7 +139,9 @@ static inline vrgb integrate(const Surface* surface, const Target* target, vint 
   const Patches patches = patches_at(surface, x, y);
   const vrgb own_light = load_rgb(w->light, w->plane, pixel_at(w, x, y));
   const vrgb own = own_share(f, &target->points, profile, patches.slope_x, patches.slope_y, patches.area_mm2);
-  Sum sum = {product(own, own_light), own};
+  // Weights are in units of the pixel's own: those of small patches, times light, would be 0.
+  const vrgb unit = {1.0f / own.r, 1.0f / own.g, 1.0f / own.b};
+  Sum sum = {own_light, broadcast_rgb((vfloat)(1.0f))};
   const vrgb reciprocal = profile->reciprocal;
   const vfloat widest = 1.0f / fmin(fmin(reciprocal.r, reciprocal.g), reciprocal.b);
   const int2 extent = reach(f, &target->points, mine, profile->reach_mm * widest);
@@ -156,7 +158,7 @@ static inline vrgb integrate(const Surface* surface, const Target* target, vint 
       const int n = distance <= NEAR_4 ? 4 : distance <= NEAR_2 ? 2 : 1;
       const Patches their = patches_at(surface, x + dx, y + dy);
       const vrgb average = patch_average(f, target, &their, dx, dy, n);
-      const vrgb density = product(average, product(reciprocal, reciprocal));
+      const vrgb density = product(product(average, product(reciprocal, reciprocal)), unit);
       const vrgb weight = select_or_zero_rgb(same, times(density, their.area_mm2));
       row.weight = sum_rgb(row.weight, weight);
       row.light = multiply_add(weight, select_or_zero_rgb(same, load_rgb(w->light, w->plane, at)), row.light);
@@ -165,18 +167,16 @@ static inline vrgb integrate(const Surface* surface, const Target* target, vint 
     sum.light = sum_rgb(sum.light, row.light);
   }
 #if SUMS_WEIGHTS
-  return sum.light;
+  return product(sum.light, own);
 #endif
   vrgb all = sum.weight;
 #if PROJECTED
   // Where its weights are more than that of a plane, Cycles has more light.
-  if (target->is_projected) {
-    const vfloat one = (vfloat)(1.0f);
-    all = (vrgb){fmin(all.r, one), fmin(all.g, one), fmin(all.b, one)};
-  }
+  if (target->is_projected) all = (vrgb){fmin(all.r, unit.r), fmin(all.g, unit.g), fmin(all.b, unit.b)};
 #endif
   const vrgb result = {sum.light.r / all.r, sum.light.g / all.g, sum.light.b / all.b};
-  return result;
+  // Where a pixel is so much larger than its neighbours, or than what the profile reaches, that this is no number.
+  return select_rgb(own_light, result, is_summable(result));
 }
 
 // A work-item has a run of `columns` pixels of a row.

@@ -86,7 +86,7 @@ FORCED_INLINE int load_planar_columns(const LightSummary* light_summary, const W
     const vint m = load_bytes(rows->material_ids + x);
     const vrgb value = read_planar_rgb(&rows->light, x);
     const vint there = AS_MASK(m != 0);
-    const vint good = is_finite(value);
+    const vint good = is_summable(value);
     const vrgb light = select_or_zero_rgb(there & good, value);
     store_rgb(horizontal.light, horizontal.plane, at, light);
     store_bytes(horizontal.material + at, m & good);

@@ -7,7 +7,7 @@
 // A sample is a patch: its light does not come from one point. See METHODS.md.
 #define PATCH 0.08f
 
-// Writes 1 where light is finite and NaN elsewhere, so that weights are summed over the pixels that give light. A
+// Writes 1 where light can be added up and NaN elsewhere, so that weights are summed over the pixels that give light. A
 // work-item has a run of `columns` pixels of a row.
 kernel void unit_light(struct FrameParams f, struct FrameLayouts layouts, global const uchar* light,
                        global const uchar* albedo, int columns, global float* ones) {
@@ -16,7 +16,7 @@ kernel void unit_light(struct FrameParams f, struct FrameLayouts layouts, global
   const int x_begin = (int)get_global_id(0) * columns;
   const RgbRow lights = rgb_row_of(light, &layouts.light, f.width, y);
   for (int x = x_begin; x < min(x_begin + columns, f.width); x += V) {
-    vint good = is_finite(read_rgb(&lights, x));
+    vint good = is_summable(read_rgb(&lights, x));
 #if HAS_ALBEDO
     const RgbRow albedos = rgb_row_of(albedo, &layouts.albedo, f.width, y);
     good &= is_finite(read_rgb(&albedos, x));

@@ -1,6 +1,8 @@
 // kernels/params.h, as C++.
 #pragma once
 
+#include "dermis/frame.hpp"
+
 namespace dermis::params {
 #include "params.h"
 
@@ -17,5 +19,6 @@ static_assert(sizeof(WindowParams) == sizeof(WindowLayout) + 6 * sizeof(int));
 static_assert(sizeof(TileMemory) == 2 * sizeof(WindowLayout) + 6 * sizeof(Bytes));
 static_assert(sizeof(TapTables) == 5 * sizeof(Bytes));
 static_assert(sizeof(TexelLevels) == (MOST_TEXEL_LEVELS + 1) * sizeof(Bytes) + 2 * sizeof(int));
+static_assert(LARGEST_LIGHT == largest_light);
 static_assert(sizeof(DiscCounts) == 4 * sizeof(int));
 }  // namespace dermis::params

@@ -27,6 +27,12 @@ bool is_bad(const std::vector<float>& rgb, std::size_t pixel) {
   return false;
 }
 
+bool can_be_added(const std::vector<float>& light, std::size_t pixel) {
+  for (std::size_t c = 3 * pixel; c < 3 * pixel + 3; ++c)
+    if (!(std::abs(light[c]) <= largest_light)) return false;
+  return true;
+}
+
 std::string text_of_light(const SurfaceInput& input) {
   const std::vector<std::string>& missing = input.roles.missing_light;
   return fmt::format(", {}{}{}", name_of(input.lighting), missing.empty() ? "" : ", without ",
@@ -67,7 +73,7 @@ std::string text_of(const LeftOut& left_out) {
     if (pixels > 0) text += fmt::format("{}{} pixels {}", text.empty() ? "" : ", ", pixels, what);
   };
   add(left_out.background, "of a material that have no depth");
-  add(left_out.bad_light, "with light that is not finite");
+  add(left_out.bad_light, "with light that is not finite, or beyond 1e32");
   add(left_out.bad_albedo, "with an albedo that is not finite");
   add(left_out.bad_depth, "with a depth that is not a number");
   return text;
@@ -126,7 +132,7 @@ LeftOut count_left_out(const SurfaceInput& input, const SurfaceRequest& request)
       if (lacks_depth[i]) ++left_out.background;
       if (!is_behind && loaded.cryptomatte.empty() && id != std::floor(id)) ++left_out.fractional_ids;
     }
-    if (is_bad(loaded.light, i)) ++left_out.bad_light;
+    if (!can_be_added(loaded.light, i)) ++left_out.bad_light;
     if (is_bad(loaded.albedo, i)) ++left_out.bad_albedo;
     if (std::isnan(depth)) ++left_out.bad_depth;
     if (is_bad(beauty, i)) ++left_out.bad_beauty;

@@ -10,7 +10,9 @@ namespace dermis::oracle {
 
 namespace {
 
-constexpr double background_depth = 1e9;                     // scene units; see Frame
+constexpr double background_depth = 1e9;                    // scene units; see Frame
+constexpr double nearest_mm = static_cast<double>(1e-15F);  // under a perspective camera
+constexpr double furthest_mm = static_cast<double>(1e15F);
 constexpr double id_tolerance = static_cast<double>(1e-3F);  // see Frame::material
 
 void check(const FrameImages& images, std::span<const Material> materials) {
@@ -33,10 +35,23 @@ bool is_finite_at(const Picture& picture, int x, int y) {
   return true;
 }
 
+/// Light as it is in the image, and as it is scattered, is within what can be added up.
+bool can_be_added(const FrameImages& images, const Light& light, int x, int y) {
+  constexpr auto most = static_cast<double>(largest_light);
+  for (int c = 0; c < 3; ++c) {
+    if (!(std::abs(images.light(x, y, c)) <= most && std::abs(light.filtered(x, y, c).value) <= most)) return false;
+  }
+  return true;
+}
+
 bool is_surface(const FrameImages& images, const View& view, int x, int y) {
   if (is_there(images.depth)) {
     const double depth = images.depth(x, y);
-    if (!std::isfinite(depth) || depth >= background_depth || (view.is_perspective() && depth <= 0)) return false;
+    const double z_mm = view.depth_mm(depth).value;
+    if (!(depth < background_depth && z_mm >= (view.is_perspective() ? nearest_mm : -furthest_mm) &&
+          z_mm <= furthest_mm)) {
+      return false;
+    }
   }
   const auto is_share = [&](const Picture& share) {
     return !is_there(share) || (std::isfinite(share(x, y)) && share(x, y) > 0);
@@ -99,12 +114,13 @@ void decide_wide(SurfacePixel& pixel, const Taps& taps) {
 }
 
 /// A pixel without its segments, for which its neighbours have to be known.
-SurfacePixel pixel_at(const FrameImages& images, const View& view, std::span<const Material> materials, int x, int y) {
+SurfacePixel pixel_at(const FrameImages& images, const View& view, std::span<const Material> materials,
+                      const Light& light, int x, int y) {
   SurfacePixel pixel;
   pixel.material = material_at(images, view, materials, x, y);
   if (pixel.material < 0) return pixel;
   pixel.covered = is_there(images.matte) ? std::min(images.matte(x, y), 1.0) : 1;
-  pixel.bad = !is_finite_at(images.light, x, y) || !has_albedo(images, x, y);
+  pixel.bad = !can_be_added(images, light, x, y) || !has_albedo(images, x, y);
   const Material& material = materials[pixel.material];
   const Bounded z_mm = is_there(images.depth) ? view.depth_mm(images.depth(x, y)) : exact(0);
   pixel.position_mm = view.position(x, y, z_mm);
@@ -121,7 +137,8 @@ SurfacePixel pixel_at(const FrameImages& images, const View& view, std::span<con
 
 }  // namespace
 
-Surface::Surface(const Frame& frame, const FrameImages& images, std::span<const Material> materials, bool sheared)
+Surface::Surface(const Frame& frame, const FrameImages& images, std::span<const Material> materials, const Light& light,
+                 bool sheared)
     : sheared_(sheared && is_there(images.depth)),
       width_(frame.width),
       height_(frame.height),
@@ -130,7 +147,7 @@ Surface::Surface(const Frame& frame, const FrameImages& images, std::span<const 
   pixels_.resize(static_cast<std::size_t>(width_) * height_);
   for (int y = 0; y < height_; ++y) {
     for (int x = 0; x < width_; ++x) {
-      pixels_[static_cast<std::size_t>(y) * width_ + x] = pixel_at(images, view_, materials, x, y);
+      pixels_[static_cast<std::size_t>(y) * width_ + x] = pixel_at(images, view_, materials, light, x, y);
     }
   }
   for (int y = 0; y < height_; ++y) {

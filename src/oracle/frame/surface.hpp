@@ -8,6 +8,7 @@
 #include "dermis/frame.hpp"
 #include "dermis/oracle/reference.hpp"
 #include "oracle/frame/frame_images.hpp"
+#include "oracle/frame/light.hpp"
 #include "oracle/frame/shear.hpp"
 #include "oracle/frame/view.hpp"
 #include "oracle/math/rounding.hpp"
@@ -38,10 +39,11 @@ Bounded patch_area(const Tangent& x, const Tangent& y);
 
 class Surface {
  public:
-  /// If `sheared`, the vertical pass runs along the shear of each run of pixels, not along y.
-  /// Throws Error(usage) if there is no material, or several and no material ids, Error(role_missing) if a width
-  /// follows an albedo that is not there.
-  Surface(const Frame& frame, const FrameImages& images, std::span<const Material> materials, bool sheared);
+  /// `light` is that of the images. If `sheared`, the vertical pass runs along the shear of each run of pixels, not
+  /// along y. Throws Error(usage) if there is no material, or several and no material ids, Error(role_missing) if a
+  /// width follows an albedo that is not there.
+  Surface(const Frame& frame, const FrameImages& images, std::span<const Material> materials, const Light& light,
+          bool sheared);
 
   int width() const { return width_; }
   int height() const { return height_; }

@@ -289,8 +289,8 @@ class DiscFilter {
 
 Reference disc(const Frame& frame, std::span<const Material> materials, const Options& options) {
   const FrameImages images = read_images(frame);
-  const Surface surface(frame, images, materials, false);
   const Light light(images, options);
+  const Surface surface(frame, images, materials, light, false);
   const BoundedPicture before = light.filtered();
   const BoundedPicture entering = entering_light(surface, images, materials, options, before);
   const DiscFilter filter(surface, images, materials, options, entering);

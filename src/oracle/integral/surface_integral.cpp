@@ -213,8 +213,8 @@ class Integral {
 
 Reference surface_integral(const Frame& frame, std::span<const Material> materials, const Options& options, int finer) {
   const FrameImages images = read_images(frame);
-  const Surface surface(frame, images, materials, false);
   const Light light(images, options);
+  const Surface surface(frame, images, materials, light, false);
   BoundedPicture scattered = light.filtered();
   const Picture entering = entering_light(surface, images, materials, options, scattered).value;
   const Integral integral(surface, materials, entering, finer);

@@ -280,9 +280,9 @@ std::size_t most_terms(std::span<const Material> materials) {
 
 Reference separable(const Frame& frame, std::span<const Material> materials, const Options& options) {
   const FrameImages images = read_images(frame);
-  const Surface surface(frame, images, materials, options.sheared && options.jitter == 0);
-  const Blocks blocks(surface, materials, may_be_flat(images, materials, options));
   const Light light(images, options);
+  const Surface surface(frame, images, materials, light, options.sheared && options.jitter == 0);
+  const Blocks blocks(surface, materials, may_be_flat(images, materials, options));
   const BoundedPicture before = light.filtered();
   const BoundedPicture entering = entering_light(surface, images, materials, options, before);
   const SeparableFrame both{surface, blocks, materials, frame.camera, options, before};

@@ -142,7 +142,7 @@ std::vector<std::optional<WalkCrossing>> walks_of(std::span<const Material> mate
 
 HiddenLight hidden_light(const Frame& frame, std::span<const Material> materials, const Options& options) {
   const FrameImages images = read_images(frame);
-  const Surface surface(frame, images, materials, false);
+  const Surface surface(frame, images, materials, Light(images, options), false);
   const std::vector<std::vector<Sample>> samples = hidden_samples(frame, surface, materials, options);
   const Picture none(frame.width, frame.height, 3);
   HiddenLight hidden{none, none, none, {}};

@@ -121,6 +121,11 @@ void shorten_ways(std::vector<ViewPatch>& patches) {
   }
 }
 
+bool can_be_added(const Vec3& light) {
+  return std::all_of(light.begin(), light.end(),
+                     [](double value) { return std::abs(value) <= static_cast<double>(largest_light); });
+}
+
 }  // namespace
 
 std::vector<ViewPatch> patches_of(const dermis::View& view, const Frame& frame, const Surface& surface,
@@ -135,7 +140,7 @@ std::vector<ViewPatch> patches_of(const dermis::View& view, const Frame& frame, 
     for (int x = 0; x < view.width; ++x) {
       const Pixel& pixel = pixels.at(x, y);
       const Vec3 its_light{light.filtered(x, y, 0).value, light.filtered(x, y, 1).value, light.filtered(x, y, 2).value};
-      if (pixel.material < 0 || !is_finite(its_light) || !is_finite(vector_at(images.light, x, y))) continue;
+      if (pixel.material < 0 || !can_be_added(its_light) || !can_be_added(vector_at(images.light, x, y))) continue;
       if (is_there(images.albedo) && !is_finite(vector_at(images.albedo, x, y))) continue;
       ViewPatch patch{pixel.position, pixel.normal, {pixels.way(x, y, horizontal), pixels.way(x, y, vertical)},
                       pixel.material, its_light,    !is_seen(pixel, frame, surface)};
