@@ -144,13 +144,12 @@ constexpr std::array known_kinds = {
                 "  burley:LR/LG/LB,mfp,albedo=AR/AG/AB\n"
                 "                             mean free path in mm and albedo\n"
                 "  burley:...,projected       with --view or --method exact: as Cycles samples it\n"},
-    ProfileKind{
-        "walk:", parse_walk, false, "walk:R/G/B[[,mfp],albedo=R/G/B]",
-        "  walk:RR/RG/RB              Cycles' random walk, by subsurface radius in mm, albedo of each pixel\n"
-        "  walk:RR/RG/RB,albedo=AR/AG/AB\n"
-        "                             the same with a constant albedo\n"
-        "  walk:LR/LG/LB,mfp,albedo=AR/AG/AB\n"
-        "                             the same by mean free path in mm\n"},
+    ProfileKind{"walk:", parse_walk, false, "walk:R/G/B[[,mfp],albedo=R/G/B]",
+                "  walk:RR/RG/RB              Cycles' random walk, by subsurface radius in mm, albedo of each pixel\n"
+                "  walk:RR/RG/RB,albedo=AR/AG/AB\n"
+                "                             the same with a constant albedo\n"
+                "  walk:LR/LG/LB,mfp,albedo=AR/AG/AB\n"
+                "                             the same by mean free path in mm\n"},
     ProfileKind{"artist:", parse_artist, false, "artist:R/G/B,R/G/B,w=W",
                 "  artist:NR/NG/NB,FR/FG/FB,w=W\n"
                 "                             a near and a far Gaussian, standard deviations in mm, W of the\n"
