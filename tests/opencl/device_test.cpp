@@ -57,10 +57,12 @@ TEST_CASE("textures and lights name a buffer that is too large", "[device]") {
   std::vector<float> light(3UL * 128 * 128, 0.5F);
   std::vector<float> scattered(light.size());
   const dermis::TexturePlan plan(limited, dermis::preset("skin").profile, {});
-  CHECK_THROWS_WITH(plan.run({.width = 128,
-                              .height = 128,
-                              .light = {.host = light.data()},
-                              .mm_per_texel = 0.1,
-                              .scattered = {.host = scattered.data()}}),
-                    "light buffer: got 0.2 MB, want at most 0.0 MB, the largest buffer of " + limited.info().name);
+  CHECK_THROWS_WITH(
+      plan.run({.width = 128,
+                .height = 128,
+                .light = {.host = light.data()},
+                .mm_per_texel = 0.1,
+                .scattered = {.host = scattered.data()}}),
+      (StartsWith("light buffer: ") || StartsWith("scattered buffer: ")) &&  // one may lie where it is read
+          Contains(" buffer: got 0.2 MB, want at most 0.0 MB, the largest buffer of " + limited.info().name));
 }
