@@ -51,7 +51,7 @@ const char* dermis_error_seen(void);
 const char* dermis_error_wanted(void);
 
 /* Devices. `name`: a number, a type ("CPU", "GPU") or a part of the name of a device or its platform; NULL or "": that
- * of the environment variable DERMIS_DEVICE, or the first one. `threads`: of a CPU; 0: all. */
+ * of the environment variable DERMIS_DEVICE, or the first GPU, or the first one. `threads`: of a CPU; 0: all. */
 dermis_code dermis_device_count(size_t* count);
 dermis_code dermis_device_open(const char* name, int threads, dermis_device** device);
 /* The caller's own, which are retained. */

@@ -33,10 +33,9 @@ class Device {
   static std::vector<DeviceInfo> list();
 
   /// Opens a device: `name` is a number from `list`, a type ("CPU") or a part of a name or platform, in any case; if
-  /// empty, the environment variable DERMIS_DEVICE says the same; if that is empty too, the first GPU, or the
-  /// first device if there is none. `threads` > 0
-  /// uses only that many compute units of a CPU device. Throws Error(device) if there is no such device, Error(usage)
-  /// if `threads` is out of range.
+  /// empty, the environment variable DERMIS_DEVICE says the same; if that is empty too, the first GPU, or the first
+  /// device if there is none. `threads` > 0 uses only that many compute units of a CPU device. Throws Error(device) if
+  /// there is no such device, Error(usage) if `threads` is out of range.
   static Device open(std::string_view name = {}, int threads = 0);
 
   /// Uses the caller's context and device. Retains both.

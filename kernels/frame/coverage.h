@@ -2,6 +2,7 @@
 // profile.
 #include "frame/image.h"
 
+// The factor at an albedo, which counts as 0..1.
 static inline vfloat width_at(global const struct WidthParams* its, vfloat albedo) {
   global const float *over = its->numerator, *under = its->denominator;
   const vfloat a = clamp(albedo, (vfloat)(0.0f), (vfloat)(1.0f));

@@ -50,17 +50,17 @@ typedef struct {
   Vectors normal;
 } Change;
 
-static inline Vectors scaled_tangent(vfloat factor, Vectors t) {
+static inline Vectors scaled_vectors(vfloat factor, Vectors t) {
   const Vectors result = {factor * t.x, factor * t.y, factor * t.z};
   return result;
 }
 
-static inline Vectors sum_of_tangents(Vectors a, Vectors b) {
+static inline Vectors sum_of_vectors(Vectors a, Vectors b) {
   const Vectors result = {a.x + b.x, a.y + b.y, a.z + b.z};
   return result;
 }
 
-static inline vfloat dot_of_tangents(Vectors a, Vectors b) { return fma(a.x, b.x, fma(a.y, b.y, a.z * b.z)); }
+static inline vfloat dot_of_vectors(Vectors a, Vectors b) { return fma(a.x, b.x, fma(a.y, b.y, a.z * b.z)); }
 
 // From a pixel to the next one at (dx, dy), and back if `sign` is -1.
 static inline Change change_to(const struct FrameParams* f, const Points* p, vfloat per_px, const Facets* own,
@@ -99,8 +99,8 @@ static inline Change change_along(const SurfaceImages* images, const Points* p, 
   const vfloat of_forward = select_or_zero(has_after, select((vfloat)(1.0f), both_forward, has_before));
   const vfloat of_backward = select_or_zero(has_before, select((vfloat)(1.0f), both_backward, has_after));
   const Change change = {
-      sum_of_tangents(scaled_tangent(of_forward, forward.point), scaled_tangent(of_backward, backward.point)),
-      sum_of_tangents(scaled_tangent(of_forward, forward.normal), scaled_tangent(of_backward, backward.normal))};
+      sum_of_vectors(scaled_vectors(of_forward, forward.point), scaled_vectors(of_backward, backward.point)),
+      sum_of_vectors(scaled_vectors(of_forward, forward.normal), scaled_vectors(of_backward, backward.normal))};
   return change;
 }
 
@@ -118,11 +118,11 @@ static inline vfloat curvature_at(const SurfaceImages* images, int x, int y) {
   const Change b = change_along(images, &p, per_px, &own, x, y, 1);
   // The two fundamental forms.
   const vfloat aa = squared_length(a.point);
-  const vfloat ab = dot_of_tangents(a.point, b.point);
+  const vfloat ab = dot_of_vectors(a.point, b.point);
   const vfloat bb = squared_length(b.point);
-  const vfloat bent_aa = dot_of_tangents(a.normal, a.point);
-  const vfloat bent_ab = 0.5f * (dot_of_tangents(a.normal, b.point) + dot_of_tangents(b.normal, a.point));
-  const vfloat bent_bb = dot_of_tangents(b.normal, b.point);
+  const vfloat bent_aa = dot_of_vectors(a.normal, a.point);
+  const vfloat bent_ab = 0.5f * (dot_of_vectors(a.normal, b.point) + dot_of_vectors(b.normal, a.point));
+  const vfloat bent_bb = dot_of_vectors(b.normal, b.point);
   const vfloat area2 = aa * bb - ab * ab;
   const vfloat least = LEAST_SINE2 * (aa * bb);
   const vfloat sum = bent_aa * bb - 2.0f * (bent_ab * ab) + bent_bb * aa;

@@ -31,3 +31,8 @@ FORCED_INLINE Vectors way_to(const struct FrameParams* f, const Points* p, vfloa
 }
 
 FORCED_INLINE vfloat squared_length(Vectors a) { return fma(a.x, a.x, fma(a.y, a.y, a.z * a.z)); }
+
+FORCED_INLINE Vectors cross_product(const Vectors* a, const Vectors* b) {
+  const Vectors c = {a->y * b->z - a->z * b->y, a->z * b->x - a->x * b->z, a->x * b->y - a->y * b->x};
+  return c;
+}

@@ -54,6 +54,5 @@ static inline vfloat patch_area(Vectors x, Vectors y) {
   const vfloat size_y = higher(least, higher(fabs(y.x), higher(fabs(y.y), fabs(y.z))));
   const Vectors a = {x.x / size_x, x.y / size_x, x.z / size_x};
   const Vectors b = {y.x / size_y, y.y / size_y, y.z / size_y};
-  const Vectors normal = {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-  return sqrt(squared_length(normal)) * size_x * size_y;
+  return sqrt(squared_length(cross_product(&a, &b))) * size_x * size_y;
 }

@@ -10,11 +10,6 @@ typedef struct {
 
 static inline vfloat product_of(const Vectors* a, const Vectors* b) { return a->x * b->x + a->y * b->y + a->z * b->z; }
 
-static inline Vectors cross_product(const Vectors* a, const Vectors* b) {
-  const Vectors c = {a->y * b->z - a->z * b->y, a->z * b->x - a->x * b->z, a->x * b->y - a->y * b->x};
-  return c;
-}
-
 static inline Vectors unit_vectors(Vectors a) {
   const vfloat shorter = 1.0f / sqrt(product_of(&a, &a));
   const Vectors unit = {a.x * shorter, a.y * shorter, a.z * shorter};

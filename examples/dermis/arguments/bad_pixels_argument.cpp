@@ -15,19 +15,12 @@ void add_bad_pixels_argument(CLI::App& app, BadPixels& what) {
 }
 
 Error bad_pixels_named_as_option(const Error& error) {
-  constexpr std::string_view before_seen = ": got ";
-  constexpr std::string_view before_wanted = ", want ";
   constexpr std::string_view option = "bad_pixels ";
-  const std::string_view line = error.what();
-  const std::size_t seen = line.find(before_seen);
-  const std::size_t wanted = line.rfind(before_wanted);
-  const std::size_t at = line.rfind(option);
-  if (seen == std::string_view::npos || wanted == std::string_view::npos || at == std::string_view::npos || at < wanted)
-    return error;
-  const std::size_t seen_at = seen + before_seen.size();
-  const std::size_t wanted_at = wanted + before_wanted.size();
-  return {error.code(), line.substr(0, seen), line.substr(seen_at, wanted - seen_at),
-          fmt::format("{}--bad-pixels {}", line.substr(wanted_at, at - wanted_at), line.substr(at + option.size()))};
+  const std::string_view wanted = error.wanted();
+  const std::size_t at = wanted.rfind(option);
+  if (at == std::string_view::npos) return error;
+  return {error.code(), error.argument(), error.seen(),
+          fmt::format("{}--bad-pixels {}", wanted.substr(0, at), wanted.substr(at + option.size()))};
 }
 
 void warn_of_bad_pixels(const Stats& stats, BadPixels what, Messages& messages) {

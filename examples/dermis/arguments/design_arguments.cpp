@@ -137,19 +137,11 @@ TapsDesign design_of(const DesignArguments& arguments, double tolerance) {
 }
 
 Error named_as_option(const Error& error) {
-  constexpr std::string_view before_seen = ": got ";
-  constexpr std::string_view before_wanted = ", want ";
-  const std::string_view line = error.what();
-  const std::size_t seen = line.find(before_seen);
-  const std::size_t wanted = line.rfind(before_wanted);
-  if (seen == std::string_view::npos || wanted == std::string_view::npos || wanted < seen) return error;
-  const std::string_view argument = line.substr(0, seen);
   constexpr std::array<std::string_view, 5> arguments = {"rank", "taps", "guide", "pixel_mm", "tolerance"};
-  if (std::find(arguments.begin(), arguments.end(), argument) == arguments.end()) return error;
-  std::string option = "--" + std::string(argument);
+  if (std::find(arguments.begin(), arguments.end(), error.argument()) == arguments.end()) return error;
+  std::string option = "--" + std::string(error.argument());
   std::replace(option.begin(), option.end(), '_', '-');
-  const std::size_t seen_at = seen + before_seen.size();
-  return {error.code(), option, line.substr(seen_at, wanted - seen_at), line.substr(wanted + before_wanted.size())};
+  return {error.code(), option, error.seen(), error.wanted()};
 }
 
 }  // namespace dermis::program

@@ -83,17 +83,9 @@ std::vector<LoadedView> load_views(const SurfaceRequest& request, const std::str
 }
 
 Error view_named_by_file(const Error& error, const std::vector<LoadedView>& views) {
-  constexpr std::string_view before_seen = ": got ";
-  constexpr std::string_view before_wanted = ", want ";
-  const std::string_view line = error.what();
   for (std::size_t i = 0; i < views.size(); ++i) {
-    const std::string name = fmt::format("view {}", i + 1);
-    const std::size_t seen = line.find(before_seen);
-    const std::size_t wanted = line.rfind(before_wanted);
-    if (line.substr(0, seen) != name || wanted == std::string_view::npos) continue;
-    const std::size_t seen_at = seen + before_seen.size();
-    return {error.code(), fmt::format("--view {}", views[i].path), line.substr(seen_at, wanted - seen_at),
-            line.substr(wanted + before_wanted.size())};
+    if (error.argument() == fmt::format("view {}", i + 1))
+      return {error.code(), fmt::format("--view {}", views[i].path), error.seen(), error.wanted()};
   }
   return error;
 }

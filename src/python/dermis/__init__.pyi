@@ -22,7 +22,7 @@ class DeviceInfo:
     memory_bytes: int
 
 class Device:
-    """A device: by number, type ("CPU") or a part of its name; "" is the first one. `threads` of a CPU; 0: all."""
+    """A device: by number, type ("CPU") or a part of its name; "" is the first GPU, or the first one. `threads` of a CPU; 0: all."""
 
     def __init__(self, name: str = "", threads: int = 0) -> None: ...
     @property
