@@ -12,7 +12,6 @@ namespace dermis::bench {
 namespace {
 
 constexpr int most_ranks = 6;
-constexpr double good_enough = 0.01;
 
 /// The red channel of a truncated decomposition over the exact kernel, along an axis and a diagonal.
 Panel slices(const Medium& medium) {

@@ -12,7 +12,6 @@ namespace dermis::bench {
 namespace {
 
 constexpr int most_terms = 6;
-constexpr double good_enough = 0.01;
 constexpr double range_mm = 4;  // on both sides of the step
 
 /// Largest errors of 1 to most_terms terms.

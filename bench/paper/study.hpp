@@ -29,6 +29,7 @@ struct Study {
 
 inline constexpr double width_px = 16;
 inline constexpr double dot_radius_px = 3;
+inline constexpr double good_enough = 0.01;  // relative L2
 inline constexpr const char* channel_names[] = {"red", "green", "blue"};
 
 /// Makes all of it. `report` is told what is going on.
