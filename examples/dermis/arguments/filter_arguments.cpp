@@ -134,6 +134,7 @@ void add_filter_arguments(CLI::App& app, FilterArguments& arguments) {
   {
     const HelpGroup group(app, "Shots");
     add_config_argument(app);
+    add_shot_arguments(app, arguments.output);
     app.add_flag("--reuse", arguments.reuse,
                  "of a sequence: tiles of which nothing within reach has changed keep the light of the picture before");
   }

@@ -20,6 +20,7 @@
 #include "commands/filter_job.hpp"
 #include "commands/filter_session.hpp"
 #include "commands/input_report.hpp"
+#include "commands/picture_tally.hpp"
 #include "commands/result_channels.hpp"
 #include "commands/surface_input.hpp"
 #include "dermis/error.hpp"
@@ -240,8 +241,8 @@ ViewResult filter_view(const FilterJob& job, const PictureFiles& files, SurfaceI
                        Stopwatch& step, Messages& messages) {
   StepTimes times;
   if (!input.scatters) {
-    if (!job.may_be_empty && job.pictures.size() == 1) require_scattering(input, job.surface);
-    messages.note(fmt::format("{}: nothing in it scatters: it is copied", files.input));
+    if (!job.may_be_empty && !job.shot.is_sequence) require_scattering(input, job.surface);
+    messages.note(fmt::format("{}: nothing in it scatters: it is copied", files.input.path));
     times.read_ms = step.lap_ms();
     return copy_view(job, input, session, times, messages);
   }
@@ -359,7 +360,7 @@ Outcome filter_picture(const FilterJob& job, const PictureFiles& files, FilterSe
   Stopwatch whole;
   Stopwatch step;
   check_outputs(files);
-  exr::Picture picture = read_picture(files.input);
+  exr::Picture picture = read_picture(files.input.path);
   const std::vector<std::string> views = views_of(picture, job.surface.picture);
   check_views(views, files.outputs);
   std::vector<ViewResult> results;
@@ -389,30 +390,37 @@ Outcome filter_picture(const FilterJob& job, const PictureFiles& files, FilterSe
   return is_copied ? Outcome::copied : Outcome::filtered;
 }
 
-/// Several pictures. One that fails is named, and the others are done nevertheless. Returns the first failure's code.
-int filter_sequence(const FilterJob& job, FilterSession& session, Messages& messages) {
-  session.device();  // without one there is nothing to go on with
-  const std::size_t count = job.pictures.size();
-  std::size_t failed = 0;
+/// For a call in which nothing scatters at all. Of a part of a sequence that may be as it should be.
+void report_empty(const FilterJob& job, Messages& messages) {
+  const std::string option = job.surface.profiles.front().id ? "--material" : "--profile";
+  const std::string seen =
+      fmt::format("{} pictures in which nothing scatters, which are copied", job.shot.pictures.size());
+  const std::string wanted = "something that scatters, or --allow-empty";
+  if (!job.shot.is_part) throw Error(ErrorCode::role_missing, option, seen, wanted);
+  messages.warn(ErrorCode::role_missing, option, fmt::format("{}; want {}", seen, wanted));
+}
+
+/// The pictures in their order.
+int filter_pictures(const FilterJob& job, FilterSession& session, Messages& messages) {
+  PictureTally tally(job.shot, job.keeps_going, messages);
+  if (!job.shot.pictures.empty()) session.device();  // without one there is nothing to go on with
+  const std::size_t count = job.shot.pictures.size();
   std::size_t copied = 0;
-  int code = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    const auto& [input, outputs] = job.pictures[i];
-    if (job.stats || !outputs.tile_map.empty()) print(exr::escaped(outputs.output) + "\n");
-    messages.begin(input);
+  for (std::size_t i = 0; i < count && tally.goes_on(); ++i) {
+    const auto& [input, outputs] = job.shot.pictures[i];
+    if (job.shot.is_sequence && (job.stats || !outputs.tile_map.empty())) print(exr::escaped(outputs.output) + "\n");
+    messages.begin(input.path);
     try {
-      if (filter_picture(job, job.pictures[i], session, messages) == Outcome::copied) ++copied;
-      messages.progress(fmt::format("{} of {}: {}", i + 1, count, outputs.output));
+      if (filter_picture(job, job.shot.pictures[i], session, messages) == Outcome::copied) ++copied;
+      tally.succeed();
+      if (job.shot.is_sequence) messages.progress(fmt::format("{} of {}: {}", i + 1, count, outputs.output));
     } catch (...) {
-      const int its_code = report_exception(input);
-      if (failed++ == 0) code = its_code;
+      tally.fail(input.path);
     }
   }
-  if (failed > 0) print_error(fmt::format("{} of {} pictures failed", failed, count));
-  if (failed == 0 && copied == count && !job.may_be_empty)
-    throw Error(ErrorCode::role_missing, job.surface.profiles.front().id ? "--material" : "--profile",
-                fmt::format("{} pictures in which nothing scatters, which are copied", count),
-                "something that scatters, or --allow-empty");
+  const int code = tally.finish();
+  if (code == 0 && copied == count && count > 0 && job.shot.is_sequence && !job.may_be_empty)
+    report_empty(job, messages);
   return code;
 }
 
@@ -421,10 +429,7 @@ int run_filter(const FilterArguments& arguments, const std::string& settings) {
   job.settings = settings;
   FilterSession session(job.device, job.reuse);
   Messages messages(job.messages);
-  if (job.pictures.size() > 1) return filter_sequence(job, session, messages);
-  messages.begin(job.pictures.front().input);
-  filter_picture(job, job.pictures.front(), session, messages);
-  return 0;
+  return filter_pictures(job, session, messages);
 }
 
 }  // namespace

@@ -10,7 +10,7 @@
 namespace dermis::program {
 
 struct FilterJob {
-  std::vector<PictureFiles> pictures;
+  Shot shot;
   SurfaceRequest surface;
   Options options;  ///< with the quality or the tolerance that was asked for
   bool sheared;     ///< in place of Options::sheared
@@ -21,6 +21,7 @@ struct FilterJob {
   Compose compose;
   bool keeps_formats;
   bool may_be_empty;
+  bool keeps_going;
   MessageArguments messages;
   DeviceArguments device;
   std::string settings = {};  ///< as TOML, for the record in the result
