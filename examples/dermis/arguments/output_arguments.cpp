@@ -56,10 +56,7 @@ std::string path_for(const FrameFile& input, const Output& output, const std::st
 }
 
 /// A pattern names several files, unless one has that very name.
-bool names_several(const std::string& input) {
-  std::error_code ignored;
-  return is_pattern(input) && !fs::exists(input, ignored);
-}
+bool names_several(const std::string& input) { return is_pattern(input) && !is_there(input); }
 
 /// The inputs by their place on the disk, to which all of their names lead.
 class InputFiles {
@@ -132,8 +129,7 @@ Shot without_missing(std::span<const PictureFiles> pictures) {
   Shot shot;
   std::map<std::string, std::vector<std::int64_t>> missing;  // by pattern
   for (const PictureFiles& picture : pictures) {
-    std::error_code ignored;
-    if (picture.input.pattern.empty() || fs::exists(picture.input.path, ignored))
+    if (picture.input.pattern.empty() || is_there(picture.input.path))
       shot.pictures.push_back(picture);
     else
       missing[picture.input.pattern].push_back(*picture.input.number);
@@ -223,6 +219,19 @@ Shot shot_of(const OutputArguments& arguments) {
   shot.is_sequence = all.size() > 1 || !all.front().input.pattern.empty();
   shot.is_part = shot.is_sequence && (all.size() == 1 || arguments.frames.chunk.of > 1);
   return shot;
+}
+
+bool is_there(const std::string& path) {
+  std::error_code ignored;
+  return fs::exists(path, ignored);
+}
+
+std::string first_missing(const OutputFiles& files) {
+  for (const Output& output : outputs) {
+    const std::string& path = files.*output.path;
+    if (!path.empty() && path != "-" && !is_there(path)) return path;
+  }
+  return {};
 }
 
 void check_outputs(const PictureFiles& files) {

@@ -74,6 +74,11 @@ void add_stats_arguments(CLI::App& app, OutputArguments& arguments);
 /// has two uses, or --frames has no pattern to name them of; Error(input_missing) for a pattern without a file.
 Shot shot_of(const OutputArguments& arguments);
 
+bool is_there(const std::string& path);
+
+/// The first of the files that is not there; empty if all are.
+std::string first_missing(const OutputFiles& files);
+
 /// Throws Error(usage) if an output takes the place of another one; Error(output) if one cannot be written.
 void check_outputs(const PictureFiles& files);
 

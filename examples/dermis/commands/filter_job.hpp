@@ -22,10 +22,13 @@ struct FilterJob {
   bool keeps_formats;
   bool may_be_empty;
   bool keeps_going;
+  bool skips_existing;  ///< results that are what would be made
   MessageArguments messages;
   DeviceArguments device;
-  std::string settings = {};  ///< as TOML, for the record in the result
-  std::string command;        ///< a command without the names of pictures and folders, for the record in the result
+  // For the record in the result:
+  std::string settings = {};     ///< as TOML
+  std::string input_lines = {};  ///< of the files that the request was read from
+  std::string command;           ///< a command without the names of pictures and folders
 };
 
 /// Throws Error(usage) for what the command line needs and lacks, and for what contradicts; and as request_of.

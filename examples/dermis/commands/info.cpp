@@ -343,7 +343,7 @@ Command add_info(CLI::App& parent) {
   add_role_arguments(*app, arguments->picture);
   add_eye_argument(*app, arguments->picture);
   add_scale_argument(*app, arguments->picture);
-  add_camera_arguments(*app, arguments->picture.camera);
+  add_camera_arguments(*app, arguments->picture);
   add_material_arguments(*app, arguments->materials);
   add_cache_argument(*app, arguments->cache_dir);
   app->add_flag(

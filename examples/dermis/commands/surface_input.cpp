@@ -86,6 +86,13 @@ SurfaceInput load_surface(exr::Picture& picture, const FrameFile& frame, const s
   return input;
 }
 
+std::vector<std::string> pictures_read(const SurfaceRequest& request, const FrameFile& frame) {
+  std::vector<std::string> files = exr::files_of(role_texts(request.picture, frame));
+  files.insert(files.begin(), frame.path);
+  for (const std::string& view : request.views) files.push_back(with_frame_number("--view", view, frame));
+  return files;
+}
+
 std::vector<MaterialPixels> count_pixels(const SurfaceInput& input, const SurfaceRequest& request, Messages& messages) {
   const MaterialCounts counts = count_materials(input.loaded.material, input.loaded.depth);
   std::vector<MaterialPixels> all;

@@ -49,6 +49,9 @@ exr::Picture read_picture(const std::string& path);
 SurfaceInput load_surface(exr::Picture& picture, const FrameFile& frame, const std::string& view,
                           const SurfaceRequest& request, bool needs_beauty);
 
+/// The pictures that load_surface reads for a frame. Throws as role_texts.
+std::vector<std::string> pictures_read(const SurfaceRequest& request, const FrameFile& frame);
+
 /// The pixels of a material. Sizes are along the axis that has the smaller ones; none if no pixel is of the material.
 struct MaterialPixels {
   std::int64_t pixels = 0;
