@@ -54,7 +54,8 @@ TEST_CASE("the outputs of a sequence are folders") {
     check_refused(run_program(arguments), 2, parts);
     CHECK(fs::is_empty(folder / "out"));
   };
-  refuses(folder / "out/a.exr", {folder / "b.exr"}, {"--output: got", "a folder that exists, for 2 pictures"});
+  refuses(folder / "out/a.exr", {folder / "b.exr"},
+          {"--output: got", "a folder that exists, or #### in its name, for 2 pictures"});
   refuses(folder / "out/a.exr", {"--reuse"}, {"--reuse: got one picture"});
   refuses(folder / "out", {folder / "b.exr", "--tile-map", folder / "t.png"},
           {"--tile-map: got", "a folder that exists"});
@@ -98,14 +99,20 @@ TEST_CASE("frames that fail are named, and the others are done") {
   const Sequence shot;
   const Outcome outcome = shot.filter("123456");
   INFO(outcome.errors);
-  CHECK(outcome.exit_code == 4);
+  CHECK(outcome.exit_code == 8);
   CHECK(has(outcome.errors, "dermis: error: " + (shot.folder / "4.exr")));
   CHECK(has(outcome.errors, "dermis: error: " + (shot.folder / "5.exr") + ": camera"));
   CHECK(has(outcome.errors, "dermis: error: 2 of 6 pictures failed\n"));
   CHECK(is_identical(shot.folder / "out/1.exr", shot.folder / "out/6.exr"));
   CHECK_FALSE(fs::exists(shot.folder / "out/4.exr"));
   CHECK_FALSE(fs::exists(shot.folder / "out/5.exr"));
-  CHECK(shot.filter("51", {"--quiet"}).exit_code == 5);
+  CHECK(shot.filter("54", {"--quiet"}).exit_code == 5);  // all failed: the first one's
+
+  fs::remove(shot.folder / "out/1.exr");
+  const Outcome stopped = shot.filter("541", {"--quiet", "--no-keep-going"});
+  CHECK(stopped.exit_code == 5);
+  CHECK(has(stopped.errors, "dermis: error: 1 of 3 pictures failed, 2 were not begun\n"));
+  CHECK_FALSE(fs::exists(shot.folder / "out/1.exr"));
 }
 
 TEST_CASE("a frame in which nothing scatters is copied, without a camera") {

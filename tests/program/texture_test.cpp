@@ -102,12 +102,12 @@ TEST_CASE("what a texture's filter did") {
   const TemporaryFolder folder;
   const std::string output =
       run_well(command(make_layout(folder), folder / "out.exr", {"--mm-per-texel", "1", "--stats-json", "-"}));
-  const nlohmann::json json = nlohmann::json::parse(output);
-  CHECK(json["method"] == "gaussians");
-  CHECK(json["stretch"] == "--mm-per-texel");
-  CHECK(json["texels"] == width * height);
-  CHECK(json["texels_empty"] == width * height / 2);
-  CHECK(json["predicted_rel_l2"].get<double>() < 1e-3);
+  const nlohmann::json stats = nlohmann::json::parse(output);
+  CHECK(stats["method"] == "gaussians");
+  CHECK(stats["stretch"] == "--mm-per-texel");
+  CHECK(stats["texels"] == width * height);
+  CHECK(stats["texels_empty"] == width * height / 2);
+  CHECK(stats["predicted_rel_l2"].get<double>() < 1e-3);
   CHECK(run_well(command(make_layout(folder), folder / "out.exr", {"--mm-per-texel", "1", "--stats"}))
             .find("texels_empty") != std::string::npos);
 }

@@ -20,9 +20,10 @@ namespace {
 constexpr std::string_view config = "--config";
 
 /// Options of a call, not of a show.
-constexpr std::array of_a_call = {"file",          "--output",  "--in-place", "--preview",    "--tile-map",
-                                  "--view-report", "--stats",   "--quiet",    "--stats-json", "--device",
-                                  "--cache-dir",   "--threads", "--config"};
+constexpr std::array of_a_call = {"file",     "--output",        "--in-place",  "--preview", "--tile-map",
+                                  "--frames", "--view-report",   "--stats",     "--quiet",   "--stats-json",
+                                  "--chunk",  "--keep-going",    "--cache-dir", "--threads", "--config",
+                                  "--device", "--skip-existing", "--dry-run"};
 
 /// The file that --config names; empty if it is not given.
 std::string file_of(const std::vector<std::string>& arguments) {

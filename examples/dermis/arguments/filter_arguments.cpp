@@ -134,6 +134,13 @@ void add_filter_arguments(CLI::App& app, FilterArguments& arguments) {
   {
     const HelpGroup group(app, "Shots");
     add_config_argument(app);
+    add_shot_arguments(app, arguments.output);
+    app.add_flag("--dry-run", arguments.is_dry_run,
+                 "read the pictures and print what would become of each, and the memory that it needs; nothing is "
+                 "written or compiled");
+    app.add_flag("--skip-existing", arguments.skips_existing,
+                 "leave results that are whole and say that this version made them from the same files with the same "
+                 "settings; others are made again, with the reason");
     app.add_flag("--reuse", arguments.reuse,
                  "of a sequence: tiles of which nothing within reach has changed keep the light of the picture before");
   }

@@ -33,6 +33,8 @@ struct FilterArguments {
   bool keeps_formats = false;  ///< of half channels that cannot hold a value
   bool may_be_empty = false;   ///< a picture in which nothing scatters
   bool reuse = false;
+  bool is_dry_run = false;
+  bool skips_existing = false;  ///< results that are what would be made
   MessageArguments messages;
   SurfaceArguments surface;
   DeviceArguments device;

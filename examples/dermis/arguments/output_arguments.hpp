@@ -2,12 +2,18 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <cstddef>
 #include <string>
 #include <vector>
 
+#include "arguments/frames_argument.hpp"
+#include "dermis/error.hpp"
+#include "files/frame_names.hpp"
+
 namespace dermis::program {
 
-/// The files that one picture becomes, or folders for several pictures. An empty name asks for nothing.
+/// The files that one picture becomes; before that folders, or patterns of names, for several. An empty name asks for
+/// nothing.
 struct OutputFiles {
   std::string output;
   std::string preview;
@@ -17,8 +23,10 @@ struct OutputFiles {
 };
 
 struct OutputArguments {
-  std::vector<std::string> inputs;
+  std::vector<std::string> inputs;  ///< files, or patterns of names
+  FramesArguments frames;
   OutputFiles files;
+  bool keeps_going = true;  ///< after a picture that fails
   bool in_place = false;    ///< an output may take the place of its input, as it does if it has no name
   std::string compression;  ///< empty: that of the input, or zip if that loses data
   bool stats = false;
@@ -26,12 +34,28 @@ struct OutputArguments {
 
 /// One picture of them.
 struct PictureFiles {
-  std::string input;
+  FrameFile input;
   OutputFiles outputs;
+};
+
+/// The pictures that a call works on.
+struct Shot {
+  std::vector<PictureFiles> pictures;  ///< those of the chunk
+  std::vector<Error> missing;          ///< for each pattern, if frames of it are not there, which ones
+  std::size_t missing_count = 0;
+  std::size_t pictures_in_all = 0;  ///< of all chunks, with those that are missing
+  bool is_sequence = false;         ///< several, or named by a pattern
+  bool is_part = false;             ///< of a sequence: a chunk, or one frame of a pattern
+
+  /// Of the chunk, with those that are missing.
+  std::size_t size() const { return pictures.size() + missing_count; }
 };
 
 /// Adds the positional FILEs, -o and --in-place.
 void add_input_and_output(CLI::App& app, OutputArguments& arguments);
+
+/// Adds --frames, --chunk and --keep-going.
+void add_shot_arguments(CLI::App& app, OutputArguments& arguments);
 
 /// Adds --in-place.
 void add_in_place_argument(CLI::App& app, bool& in_place);
@@ -45,10 +69,15 @@ void add_compression_argument(CLI::App& app, std::string& compression);
 /// Adds --stats and --stats-json.
 void add_stats_arguments(CLI::App& app, OutputArguments& arguments);
 
-/// The files of each input by itself, in the folders that were named. Throws Error(usage) if a file is named for
-/// several inputs, two outputs have one name, one leads to an input (but for --in-place), or standard output has two
-/// uses.
-std::vector<PictureFiles> files_of(const OutputArguments& arguments);
+/// The files of each input by itself, in the folders and by the patterns that were named. Throws Error(usage) if a file
+/// is named for several inputs, two outputs have one name, one leads to an input (but for --in-place), standard output
+/// has two uses, or --frames has no pattern to name them of; Error(input_missing) for a pattern without a file.
+Shot shot_of(const OutputArguments& arguments);
+
+bool is_there(const std::string& path);
+
+/// The first of the files that is not there; empty if all are.
+std::string first_missing(const OutputFiles& files);
 
 /// Throws Error(usage) if an output takes the place of another one; Error(output) if one cannot be written.
 void check_outputs(const PictureFiles& files);

@@ -78,7 +78,8 @@ void add_scale_argument(CLI::App& app, PictureArguments& arguments) {
       ->check(number_above_zero("millimetres per scene unit"));
 }
 
-void add_camera_arguments(CLI::App& app, exr::CameraHint& camera) {
+void add_camera_arguments(CLI::App& app, PictureArguments& arguments) {
+  exr::CameraHint& camera = arguments.camera;
   auto* fov = app.add_option("--fov", camera.fov_deg, "horizontal field of view of the display window, degrees");
   fov->check(real_number([](double deg) { return deg > 0 && deg < 180; }, "degrees, above 0 and below 180"));
   auto* focal = app.add_option("--focal-px", camera.focal_px, "focal length, pixels");
@@ -87,7 +88,11 @@ void add_camera_arguments(CLI::App& app, exr::CameraHint& camera) {
       app.add_option("--px-per-unit", camera.orthographic_px_per_unit, "orthographic camera: pixels per scene unit");
   scale->check(number_above_zero("pixels per scene unit"));
   auto* file = app.add_option_function<std::string>(
-      "--camera", [&camera](const std::string& path) { read_camera_file("--camera", path, camera); },
+      "--camera",
+      [&arguments](const std::string& path) {
+        read_camera_file("--camera", path, arguments.camera);
+        arguments.camera_file = path;
+      },
       "a JSON file with the camera: fov_deg, focal_px, focal_mm and sensor_width_mm, px_per_unit, or worldToCamera and "
       "worldToNDC");
   file->type_name("FILE");

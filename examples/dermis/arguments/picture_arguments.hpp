@@ -16,6 +16,7 @@ struct PictureArguments {
   std::string eye;     ///< a view of a stereo picture; empty: each of them
   std::string preset;  ///< a renderer, or a file that maps names; empty: the renderer that it looks like
   exr::CameraHint camera;
+  std::string camera_file;  ///< that the hint is from; or empty
   std::optional<double> mm_per_unit;
 };
 
@@ -29,7 +30,7 @@ void add_eye_argument(CLI::App& app, PictureArguments& arguments);
 void add_scale_argument(CLI::App& app, PictureArguments& arguments);
 
 /// Adds --fov, --focal-px, --px-per-unit, --camera and --depth-type.
-void add_camera_arguments(CLI::App& app, exr::CameraHint& camera);
+void add_camera_arguments(CLI::App& app, PictureArguments& arguments);
 
 /// The options about the camera that were given, with a space before each.
 std::string command_text(const exr::CameraHint& camera);

@@ -53,11 +53,15 @@ Profile parse_profile(std::string_view argument, std::string_view text) {
   }
 }
 
-std::string without_folders(std::string_view text) {
+std::string file_of_profile(std::string_view text) {
   const ProfileKind* kind = kind_of(text, all_kinds());
-  if (kind == nullptr || !kind->is_file) return std::string(text);
-  const std::filesystem::path file(text.substr(kind->prefix.size()));
-  return std::string(kind->prefix) + file.filename().string();
+  return kind != nullptr && kind->is_file ? std::string(text.substr(kind->prefix.size())) : std::string();
+}
+
+std::string without_folders(std::string_view text) {
+  const std::string file = file_of_profile(text);
+  if (file.empty()) return std::string(text);
+  return std::string(text.substr(0, text.size() - file.size())) + std::filesystem::path(file).filename().string();
 }
 
 }  // namespace dermis::program

@@ -15,6 +15,9 @@ std::string profile_grammar();
 /// Error(input_missing) or Error(input_unsupported) for the file of Gaussians or of a table.
 Profile parse_profile(std::string_view argument, std::string_view text);
 
+/// The file that a PROFILE names; empty if it names none.
+std::string file_of_profile(std::string_view text);
+
 /// `text` without the folders of the file in it.
 std::string without_folders(std::string_view text);
 

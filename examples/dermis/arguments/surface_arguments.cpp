@@ -4,6 +4,7 @@
 
 #include "arguments/cryptomatte_argument.hpp"
 #include "arguments/help.hpp"
+#include "arguments/profile_argument.hpp"
 #include "arguments/word_argument.hpp"
 #include "dermis/error.hpp"
 
@@ -17,7 +18,7 @@ void add_reading_groups(CLI::App& app, SurfaceArguments& arguments) {
     add_cryptomatte_argument(app, arguments.cryptomatte);
   }
   const HelpGroup group(app, "Camera, if position and depth do not tell it");
-  add_camera_arguments(app, arguments.picture.camera);
+  add_camera_arguments(app, arguments.picture);
 }
 
 void add_view_arguments(CLI::App& app, SurfaceArguments& arguments) {
@@ -68,7 +69,8 @@ SurfaceRequest request_of(const SurfaceArguments& arguments) {
                          .view_factor = arguments.view_factor,
                          .curvature = arguments.curvature,
                          .lights = {},
-                         .translucency = arguments.translucency.options};
+                         .translucency = arguments.translucency.options,
+                         .files = {}};
   if (arguments.translucency.wanted) request.lights.emplace("--lights", arguments.translucency.lights);
   request.profiles = parse_profiles(arguments.materials);
   const std::vector<MatteId> named = mattes_of(request.profiles);
@@ -77,6 +79,11 @@ SurfaceRequest request_of(const SurfaceArguments& arguments) {
                 arguments.cryptomatte.front() + " with " + option_text(request.profiles.front()),
                 "--material with the name alone");
   request.mattes.insert(request.mattes.end(), named.begin(), named.end());
+  if (request.lights) request.files = request.lights->files();
+  for (const NamedProfile& profile : request.profiles) request.files.push_back(file_of_profile(profile.text));
+  request.files.push_back(request.picture.camera_file);
+  if (request.picture.preset.ends_with(".json")) request.files.push_back(request.picture.preset);
+  std::erase(request.files, "");
   return request;
 }
 

@@ -39,6 +39,7 @@ struct SurfaceRequest {
   bool curvature;                    ///< whether normals are read for what walks gain by it
   std::optional<LightsFile> lights;  ///< if light is to come through
   TranslucencyOptions translucency;
+  std::vector<std::string> files;  ///< that the request was read from: profiles, lights, camera, names
 };
 
 /// Adds the options that a picture is read by, in groups: channels, camera.

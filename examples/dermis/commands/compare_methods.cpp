@@ -123,7 +123,7 @@ int run_compare_methods(const CompareMethodsArguments& arguments) {
   need_gnuplot("--output");
   exr::Picture picture = read_picture(arguments.input);
   SurfaceInput input =
-      load_surface(picture, arguments.input, views_of(picture, request.picture).front(), request, true);
+      load_surface(picture, frame_file(arguments.input), views_of(picture, request.picture).front(), request, true);
   require_scattering(input, request);
   if (input.lighting == Lighting::lit)
     throw Error(ErrorCode::usage, "light", "light with the albedo in it, as " + input.roles.renderer + " writes it",

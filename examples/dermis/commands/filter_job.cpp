@@ -10,6 +10,7 @@
 #include "arguments/cache_argument.hpp"
 #include "arguments/profile_argument.hpp"
 #include "dermis/error.hpp"
+#include "files/result_record.hpp"
 
 namespace dermis::program {
 namespace {
@@ -102,7 +103,7 @@ Options options_of(const FilterArguments& arguments) {
   return options;
 }
 
-std::string record_of(const FilterArguments& arguments, const FilterJob& job) {
+std::string command_of(const FilterArguments& arguments, const FilterJob& job) {
   const Options& options = job.options;
   std::string text = "filter";
   const auto add = [&](std::string_view name, const auto& value) { text += fmt::format(" {} {}", name, value); };
@@ -149,11 +150,9 @@ FilterJob job_of(const FilterArguments& arguments) {
   if (!arguments.output.files.view_report.empty() && arguments.surface.views.empty())
     throw Error(ErrorCode::usage, "--view-report", arguments.output.files.view_report + " without --view",
                 "a view to report on");
-  if (arguments.reuse && arguments.output.inputs.size() == 1)
-    throw Error(ErrorCode::usage, "--reuse", "one picture", "several, of a sequence");
   SurfaceRequest surface = request_of(arguments.surface);
   // After the materials: a name with a blank and without quotes has its end among the files.
-  FilterJob job{.pictures = files_of(arguments.output),
+  FilterJob job{.shot = shot_of(arguments.output),
                 .surface = std::move(surface),
                 .options = options,
                 .sheared = arguments.sheared.value_or(options.jitter == 0 && choose_taps({}, options).options.sheared),
@@ -164,12 +163,20 @@ FilterJob job_of(const FilterArguments& arguments) {
                 .compose = arguments.compose,
                 .keeps_formats = arguments.keeps_formats,
                 .may_be_empty = arguments.may_be_empty,
+                .keeps_going = arguments.output.keeps_going,
+                .skips_existing = arguments.skips_existing,
                 .messages = arguments.messages,
                 .device = arguments.device,
                 .command = {}};
+  if (arguments.skips_existing && arguments.output.in_place)
+    throw Error(ErrorCode::usage, "--skip-existing", "it with --in-place",
+                "results that do not take the place of what they are made from");
+  if (arguments.reuse && !job.shot.is_sequence)
+    throw Error(ErrorCode::usage, "--reuse", "one picture", "several, of a sequence");
   if (options.taps.tolerance > 0 && arguments.design.rank)  // a quality would take neither
     for (NamedProfile& named : job.surface.profiles) named.taps = options.taps;
-  job.command = record_of(arguments, job);
+  job.command = command_of(arguments, job);
+  job.input_lines = input_lines(job.surface.files);
   return job;
 }
 

@@ -10,7 +10,7 @@
 namespace dermis::program {
 
 struct FilterJob {
-  std::vector<PictureFiles> pictures;
+  Shot shot;
   SurfaceRequest surface;
   Options options;  ///< with the quality or the tolerance that was asked for
   bool sheared;     ///< in place of Options::sheared
@@ -21,10 +21,14 @@ struct FilterJob {
   Compose compose;
   bool keeps_formats;
   bool may_be_empty;
+  bool keeps_going;
+  bool skips_existing;  ///< results that are what would be made
   MessageArguments messages;
   DeviceArguments device;
-  std::string settings = {};  ///< as TOML, for the record in the result
-  std::string command;        ///< a command without the names of pictures and folders, for the record in the result
+  // For the record in the result:
+  std::string settings = {};     ///< as TOML
+  std::string input_lines = {};  ///< of the files that the request was read from
+  std::string command;           ///< a command without the names of pictures and folders
 };
 
 /// Throws Error(usage) for what the command line needs and lacks, and for what contradicts; and as request_of.

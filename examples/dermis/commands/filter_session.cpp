@@ -2,8 +2,11 @@
 
 namespace dermis::program {
 
-FilterSession::FilterSession(const DeviceArguments& device, bool reuses)
-    : device_(std::async(std::launch::async, [device] { return open_device(device); })), reuses_(reuses) {}
+FilterSession::FilterSession(const DeviceArguments& device, bool reuses) : device_(device), reuses_(reuses) {}
+
+void FilterSession::open() {
+  if (!opened_.valid()) opened_ = std::async([device = device_] { return open_device(device); });
+}
 
 const Plan& FilterSession::plan(const ChosenTaps& taps, const FrameDescription& frames) {
   if (plan_ && taps_.materials == taps.materials && frames_ == frames && taps_.options == taps.options) return *plan_;

@@ -15,8 +15,14 @@ class FilterSession {
   /// `reuses`: pictures take the light of what has not changed from the one before.
   FilterSession(const DeviceArguments& device, bool reuses);
 
-  /// The device, which opens while the first picture is read. Throws as Device::open.
-  const Device& device() { return device_.get(); }
+  /// Begins to open the device, which goes on while others work.
+  void open();
+
+  /// The device, which is opened if it is not yet. Throws as Device::open.
+  const Device& device() {
+    open();
+    return opened_.get();
+  }
 
   /// The plan of these, which is that of the picture before if nothing has changed.
   const Plan& plan(const ChosenTaps& taps, const FrameDescription& frames);
@@ -25,7 +31,8 @@ class FilterSession {
   Stats run(const Frame& frame, const Progress& progress);
 
  private:
-  std::shared_future<Device> device_;
+  DeviceArguments device_;
+  std::shared_future<Device> opened_;
   bool reuses_;
   ChosenTaps taps_;
   FrameDescription frames_;

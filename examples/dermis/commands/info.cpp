@@ -320,8 +320,8 @@ std::string text_of(const Info& info) {
 int run_info(const InfoArguments& arguments) {
   const std::vector<NamedProfile> profiles = parse_profiles(arguments.materials);
   Info info{arguments.path, exr::Picture::read(arguments.path), {}, {}, {}, {}, {}, 0, {}};
-  info.roles =
-      roles_of(info.picture, arguments.path, arguments.picture, views_of(info.picture, arguments.picture).front());
+  info.roles = roles_of(info.picture, frame_file(arguments.path), arguments.picture,
+                        views_of(info.picture, arguments.picture).front());
   info.cryptomattes = exr::find_cryptomattes(info.picture, info.roles, folder_of(arguments.path));
   find_camera(info, arguments.picture.camera);
   Messages messages({});
@@ -343,7 +343,7 @@ Command add_info(CLI::App& parent) {
   add_role_arguments(*app, arguments->picture);
   add_eye_argument(*app, arguments->picture);
   add_scale_argument(*app, arguments->picture);
-  add_camera_arguments(*app, arguments->picture.camera);
+  add_camera_arguments(*app, arguments->picture);
   add_material_arguments(*app, arguments->materials);
   add_cache_argument(*app, arguments->cache_dir);
   app->add_flag(

@@ -105,7 +105,7 @@ int run_light(const LightArguments& arguments) {
   check_writable("--output", arguments.output);
   const LightsFile lights("--lights", arguments.lights);
   exr::Picture picture = exr::Picture::read(arguments.path);
-  const exr::Roles roles = roles_of(picture, arguments.path, arguments.picture);
+  const exr::Roles roles = roles_of(picture, frame_file(arguments.path), arguments.picture);
   for (const Role role : {Role::position, Role::normal, Role::albedo}) exr::require(picture, roles, role);
   check_compression(arguments.compression, picture, roles, {});
   const Viewer viewer = viewer_of(arguments, picture, roles);

@@ -52,7 +52,7 @@ int parse_and_run(int argc, char** argv) {
   app.require_subcommand(1);
   app.footer(
       "Exit codes: 0 done, 1 differs (compare), 2 usage, 3 input missing, 4 input damaged or unsupported,\n"
-      "5 role or camera missing, 6 output, 7 device.");
+      "5 role or camera missing, 6 output, 7 device, 8 some pictures of several failed.");
   wrap_help(app);
   const std::array commands{add_filter(app),    add_texture(app),  add_light(app), add_info(app),
                             add_warm(app),      add_profiles(app), add_taps(app),  add_compare_methods(app),

@@ -51,16 +51,16 @@ exr::Picture read_picture(const std::string& path) {
   return exr::Picture::read(path, added_channels);
 }
 
-SurfaceInput load_surface(exr::Picture& picture, const std::string& path, const std::string& view,
+SurfaceInput load_surface(exr::Picture& picture, const FrameFile& frame, const std::string& view,
                           const SurfaceRequest& request, bool needs_beauty) {
-  SurfaceInput input{picture, roles_of(picture, path, request.picture, view), {}, {}, {}, {}, {}, {}, {}, true};
+  SurfaceInput input{picture, roles_of(picture, frame, request.picture, view), {}, {}, {}, {}, {}, {}, {}, true};
   input.lighting = request.lighting.value_or(input.roles.lighting);
   require_roles(picture, input.roles, request.profiles, !request.mattes.empty());
   if (needs_beauty) exr::require(picture, input.roles, Role::beauty);
   // The camera takes as long to find as the images take to load, and needs none of them.
   auto camera =
       std::async(std::launch::async, [&] { return exr::find_camera(picture, input.roles, request.picture.camera); });
-  input.loaded = load_images(picture, input.roles, request.profiles, request.mattes, folder_of(path));
+  input.loaded = load_images(picture, input.roles, request.profiles, request.mattes, folder_of(frame.path));
   const auto scatters = [&] {
     const std::vector<std::uint8_t> pixels = scattering_pixels(input.loaded, request.profiles);
     return std::find(pixels.begin(), pixels.end(), 1) != pixels.end();
@@ -80,10 +80,17 @@ SurfaceInput load_surface(exr::Picture& picture, const std::string& path, const 
   const bool is_asked = request.view_factor != ViewFactor::automatic;
   if (input.scatters && takes_out_view_factor(request, input.roles) && (is_asked || input.camera.eye))
     take_out_view_factor(input, request.profiles);
-  if (input.scatters) input.loaded_views = load_views(request, path, input.camera, input.lighting);
+  if (input.scatters) input.loaded_views = load_views(request, frame, input.camera, input.lighting);
   for (const LoadedView& loaded : input.loaded_views) input.views.push_back(loaded.view());
   if (request.lights) input.translucency = load_translucency_images(picture, input.roles);
   return input;
+}
+
+std::vector<std::string> pictures_read(const SurfaceRequest& request, const FrameFile& frame) {
+  std::vector<std::string> files = exr::files_of(role_texts(request.picture, frame));
+  files.insert(files.begin(), frame.path);
+  for (const std::string& view : request.views) files.push_back(with_frame_number("--view", view, frame));
+  return files;
 }
 
 std::vector<MaterialPixels> count_pixels(const SurfaceInput& input, const SurfaceRequest& request, Messages& messages) {

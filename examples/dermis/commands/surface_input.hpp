@@ -10,6 +10,7 @@
 #include "dermis/exr.hpp"
 #include "dermis/plan.hpp"
 #include "dermis/translucency.hpp"
+#include "files/frame_names.hpp"
 #include "files/loaded_frame.hpp"
 #include "files/loaded_view.hpp"
 #include "report/messages.hpp"
@@ -43,10 +44,13 @@ struct SurfaceInput {
 /// Reads the file, with room for the scattered light of a view.
 exr::Picture read_picture(const std::string& path);
 
-/// Loads what is needed of a view of a picture, which is that of `path`. Throws Error(input_missing),
+/// Loads what is needed of a view of a picture, which is that of `frame`. Throws Error(input_missing),
 /// Error(input_unsupported) or Error(role_missing) for what it lacks.
-SurfaceInput load_surface(exr::Picture& picture, const std::string& path, const std::string& view,
+SurfaceInput load_surface(exr::Picture& picture, const FrameFile& frame, const std::string& view,
                           const SurfaceRequest& request, bool needs_beauty);
+
+/// The pictures that load_surface reads for a frame. Throws as role_texts.
+std::vector<std::string> pictures_read(const SurfaceRequest& request, const FrameFile& frame);
 
 /// The pixels of a material. Sizes are along the axis that has the smaller ones; none if no pixel is of the material.
 struct MaterialPixels {

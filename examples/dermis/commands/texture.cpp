@@ -18,6 +18,7 @@
 #include "arguments/word_argument.hpp"
 #include "commands/commands.hpp"
 #include "commands/input_report.hpp"
+#include "commands/picture_tally.hpp"
 #include "commands/result_channels.hpp"
 #include "dermis/error.hpp"
 #include "dermis/exr.hpp"
@@ -140,14 +141,13 @@ struct Session {
 };
 
 void filter_texture(const TextureArguments& arguments, const PictureFiles& files, const Profile& profile,
-                    Session& session) {
+                    Session& session, Messages& messages) {
   check_outputs(files);
-  exr::Picture picture = exr::Picture::read(files.input);
+  exr::Picture picture = exr::Picture::read(files.input.path);
   const exr::Roles roles = roles_of(picture, files.input, arguments.picture);
   const LoadedTexture loaded = load_texture(arguments, picture, roles);
   check_compression(arguments.output.compression, picture, roles, {});
-  Messages messages({});
-  messages.begin(files.input);
+  messages.begin(files.input.path);
   warn_of_input(roles, {}, messages);
   const std::vector<std::string> scattered = scattered_channels(picture, roles, messages);
   const std::vector<std::string> result = channels_of_pass(roles, "sss_albedo");
@@ -178,11 +178,20 @@ void filter_texture(const TextureArguments& arguments, const PictureFiles& files
 int run_texture(const TextureArguments& arguments) {
   if (arguments.mm_per_texel && arguments.picture.mm_per_unit)
     throw Error(ErrorCode::usage, "--mm-per-texel", "it with --mm-per-unit", "one of the two");
-  const std::vector<PictureFiles> pictures = files_of(arguments.output);
+  const Shot shot = shot_of(arguments.output);
   const Profile profile = parse_profile("--profile", arguments.profile);
   Session session;
-  for (const PictureFiles& files : pictures) filter_texture(arguments, files, profile, session);
-  return 0;
+  Messages messages({});
+  PictureTally tally(shot, arguments.output.keeps_going, messages);
+  for (auto files = shot.pictures.begin(); files != shot.pictures.end() && tally.goes_on(); ++files) {
+    try {
+      filter_texture(arguments, *files, profile, session, messages);
+      tally.succeed();
+    } catch (...) {
+      tally.fail(files->input.path);
+    }
+  }
+  return tally.finish();
 }
 
 void add_texture_arguments(CLI::App& app, TextureArguments& arguments) {
@@ -201,6 +210,10 @@ void add_texture_arguments(CLI::App& app, TextureArguments& arguments) {
                    "m: albedo^m goes in before the blur, albedo^(1-m) after; 0 = all after, 0.5 = half and half")
         ->check(number_0_to_1())
         ->capture_default_str();
+  }
+  {
+    const HelpGroup group(app, "Shots");
+    add_shot_arguments(app, arguments.output);
   }
   {
     const HelpGroup group(app, "Channels");

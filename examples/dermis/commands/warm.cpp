@@ -53,7 +53,8 @@ void warm_for(const std::string& path, const FilterJob& job, FilterSession& sess
   Messages messages(job.messages);
   messages.begin(path);
   exr::Picture picture = read_picture(path);
-  SurfaceInput input = load_surface(picture, path, views_of(picture, job.surface.picture).front(), job.surface, false);
+  SurfaceInput input =
+      load_surface(picture, frame_file(path), views_of(picture, job.surface.picture).front(), job.surface, false);
   warn_of_input(input.roles, input.camera, messages);
   Frame frame = input.frame(job.surface.mm_per_unit);
   const ChosenTaps taps = taps_of(job, count_pixels(input, job.surface, messages), input.lighting);

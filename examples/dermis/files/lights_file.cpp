@@ -132,12 +132,15 @@ std::vector<float> depths_of(const Object& map, const exr::Picture& picture) {
   return exr::load(picture, roles, exr::Role::depth);
 }
 
-void read_map(const Object& object, const std::filesystem::path& folder, Light& light, std::vector<float>& depths) {
+/// Returns the file of the map.
+std::string read_map(const Object& object, const std::filesystem::path& folder, Light& light,
+                     std::vector<float>& depths) {
   object.allow({"file", "channel", "view_projection", "depth", "bias"});
   constexpr const char* wanted = "the name of an OpenEXR file";
   const std::string name = object.text("file", wanted);
   if (name.find('\0') != std::string::npos) object.fail("file", exr::shown(name), wanted);
-  const exr::Picture picture = exr::Picture::read(folder / name);
+  const std::filesystem::path path = folder / name;
+  const exr::Picture picture = exr::Picture::read(path);
   depths = depths_of(object, picture);
   light.map.width = picture.width();
   light.map.height = picture.height();
@@ -145,6 +148,7 @@ void read_map(const Object& object, const std::filesystem::path& folder, Light& 
   if (object.has("depth")) light.map.kind = static_cast<MapDepth>(object.word("depth", depth_names));
   light.map.bias_units = object.number("bias", 0);
   if (light.map.bias_units < 0) object.fail("bias", fmt::format("{}", light.map.bias_units), "0 or more");
+  return path.string();
 }
 
 Light read_light(const Object& object) {
@@ -181,7 +185,7 @@ ShadingOptions read_highlight(const Object& object) {
 
 }  // namespace
 
-LightsFile::LightsFile(std::string_view argument, const std::string& path) {
+LightsFile::LightsFile(std::string_view argument, const std::string& path) : files_{path} {
   const json root = read_json(argument, path, "a JSON file with lights");
   const std::string name = fmt::format("{} {}", argument, path);
   const Object all(name, "", root);
@@ -193,7 +197,8 @@ LightsFile::LightsFile(std::string_view argument, const std::string& path) {
     const Object object(name, fmt::format("lights[{}]", lights_.size()), entry);
     lights_.push_back(read_light(object));
     maps_.emplace_back();
-    if (object.has("shadow_map")) read_map(object.object("shadow_map"), folder, lights_.back(), maps_.back());
+    if (object.has("shadow_map"))
+      files_.push_back(read_map(object.object("shadow_map"), folder, lights_.back(), maps_.back()));
   }
   if (all.has("highlight")) shading_ = read_highlight(all.object("highlight"));
 }

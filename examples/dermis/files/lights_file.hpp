@@ -50,7 +50,11 @@ class LightsFile {
   /// The highlight of the file, in options that have their defaults else.
   const ShadingOptions& shading() const { return shading_; }
 
+  /// The file itself and those of the maps.
+  const std::vector<std::string>& files() const { return files_; }
+
  private:
+  std::vector<std::string> files_;
   std::vector<Light> lights_;
   std::vector<std::vector<float>> maps_;  ///< one per light; empty if it has none
   ShadingOptions shading_;

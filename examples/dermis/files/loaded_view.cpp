@@ -28,7 +28,7 @@ LoadedView load_view(const SurfaceRequest& request, const std::string& path, Lig
   // Channels and camera that the command line names are those of the picture itself.
   PictureArguments names;
   names.preset = request.picture.preset;
-  const exr::Roles roles = roles_of(picture, path, names);
+  const exr::Roles roles = roles_of(picture, frame_file(path), names);
   std::vector<Role> needed = {Role::light, Role::albedo, Role::position, Role::normal};
   if (have_ids(request.profiles) && request.mattes.empty()) needed.push_back(Role::material);
   for (const Role role : needed)
@@ -69,14 +69,14 @@ bool takes_out_view_factor(const SurfaceRequest& request, const exr::Roles& role
          roles.has(exr::Role::normal) && roles.has(exr::Role::position);
 }
 
-std::vector<LoadedView> load_views(const SurfaceRequest& request, const std::string& path,
+std::vector<LoadedView> load_views(const SurfaceRequest& request, const FrameFile& frame,
                                    const exr::FoundCamera& camera, Lighting lighting) {
   std::vector<LoadedView> views;
   for (const std::string& name : request.views) {
     if (!camera.world_to_camera)
       throw Error(ErrorCode::role_missing, "--view", fmt::format("{} with a camera from {}", name, camera.source),
                   "a picture with positions that tell where its camera is");
-    views.push_back(load_view(request, with_frame_number("--view", name, path), lighting));
+    views.push_back(load_view(request, with_frame_number("--view", name, frame), lighting));
     views.back().to_camera = *camera.world_to_camera;
   }
   return views;

@@ -10,6 +10,7 @@
 #include "dermis/exr.hpp"
 #include "dermis/frame.hpp"
 #include "dermis/plan.hpp"
+#include "files/frame_names.hpp"
 #include "files/loaded_frame.hpp"
 #include "report/messages.hpp"
 
@@ -29,10 +30,10 @@ struct LoadedView {
 /// Whether the light of a picture with these roles loses its view factor.
 bool takes_out_view_factor(const SurfaceRequest& request, const exr::Roles& roles);
 
-/// Loads the views of the request that belong to the picture `path`, which `camera` has seen and whose light is of that
-/// kind. Throws Error(input_missing), Error(input_unsupported) or Error(role_missing) for what they lack, or for a
+/// Loads the views of the request that belong to the picture of `frame`, which `camera` has seen and whose light is of
+/// that kind. Throws Error(input_missing), Error(input_unsupported) or Error(role_missing) for what they lack, or for a
 /// camera whose place in the world is not known.
-std::vector<LoadedView> load_views(const SurfaceRequest& request, const std::string& path,
+std::vector<LoadedView> load_views(const SurfaceRequest& request, const FrameFile& frame,
                                    const exr::FoundCamera& camera, Lighting lighting);
 
 /// An error of the library about "view N", of `views`, as one about --view.

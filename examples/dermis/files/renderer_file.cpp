@@ -13,7 +13,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr const char* wanted_renderer =
+constexpr const char* wanted_form =
     R"(as {"lighting": "raw", "roles": {"light": ["direct", "indirect"], "albedo": "colour"}})";
 
 [[noreturn]] void refuse(const std::string& path, const std::string& seen, const std::string& want) {
@@ -53,7 +53,7 @@ std::optional<exr::Renderer> read_renderer(const std::string& preset) {
   const json file = read_json("--preset", preset, "a JSON file with names of passes");
   exr::Renderer renderer{std::filesystem::path(preset).stem().string(), Lighting::raw, {}, {}};
   bool says_lighting = false;
-  if (!file.is_object()) refuse(preset, printed(file), wanted_renderer);
+  if (!file.is_object()) refuse(preset, printed(file), wanted_form);
   for (const auto& [key, value] : file.items()) {
     if (key == "lighting") {
       const auto lighting = value.is_string() ? value_named<Lighting>(value.get<std::string>()) : std::nullopt;
@@ -63,10 +63,10 @@ std::optional<exr::Renderer> read_renderer(const std::string& preset) {
     } else if (key == "roles" && value.is_object()) {
       for (const auto& [name, passes] : value.items()) add_role(renderer, name, passes, preset);
     } else {
-      refuse(preset, exr::shown(key) + ": " + printed(value), wanted_renderer);
+      refuse(preset, exr::shown(key) + ": " + printed(value), wanted_form);
     }
   }
-  if (renderer.passes.empty()) refuse(preset, "no roles", wanted_renderer);
+  if (renderer.passes.empty()) refuse(preset, "no roles", wanted_form);
   const bool has_light = std::any_of(renderer.passes.begin(), renderer.passes.end(),
                                      [](const exr::Renderer::Pass& pass) { return pass.role == exr::Role::light; });
   if (has_light && !says_lighting)
