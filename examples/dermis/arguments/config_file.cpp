@@ -89,6 +89,7 @@ void mark_settings(CLI::App& app) {
 std::string settings_of(const CLI::App& app) { return app.config_to_str(); }
 
 std::vector<std::string> with_config(const CLI::App& command, const std::vector<std::string>& arguments) {
+  if (command.get_option_no_throw(std::string(config)) == nullptr) return arguments;
   const std::string path = file_of(arguments);
   if (path.empty()) return arguments;
   const std::set<const CLI::Option*> given = given_options(command, arguments);

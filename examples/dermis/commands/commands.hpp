@@ -24,6 +24,7 @@ Command add_taps(CLI::App& parent);
 Command add_compare(CLI::App& parent);
 Command add_preview(CLI::App& parent);
 Command add_scene(CLI::App& parent);
+Command add_submit(CLI::App& parent);
 Command add_completion(CLI::App& parent);
 
 }  // namespace dermis::program
