@@ -51,7 +51,9 @@ typedef long long Bytes;
 #define COUNTER_UNLIT 8        // pixels
 #define COUNTER_REACH 9        // px that taps of the vertical pass go at most
 #define COUNTER_REACHED 10     // pixels that hidden light reaches
-#define RUN_COUNTERS 11
+#define COUNTER_FINEST_X 11    // most pixels per mm, as in BlockParams, as the bits of a float above 0
+#define COUNTER_FINEST_Y 12
+#define RUN_COUNTERS 13
 
 // Kinds of tile, as dermis::TileKind.
 #define TILE_WITHOUT_MATERIAL 0
@@ -195,13 +197,17 @@ struct RunFlags {
   int reuses;      // tiles that have not changed since the frame before keep its deferred light
 };
 
-// The size and the camera of a frame. A pixel at view depth z spans mm_per_px + slope * z, in x and in y.
+// The size and the camera of a frame, or of a band of its rows: then rows of kernels count from the first one of the
+// band, and light is computed, and pixels are counted, in its own rows. A pixel at view depth z spans
+// mm_per_px + slope * z, in x and in y.
 struct FrameParams {
   int width;
   int height;
   int stride;  // of planes as large as the frame, elements
   int blocks_x;
   int blocks_y;
+  int first_row;  // of the band in the frame: a multiple of BLOCK
+  int own_begin, own_end;
   float mm_per_unit;
   float mm_per_px_x;
   float mm_per_px_y;

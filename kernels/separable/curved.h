@@ -199,8 +199,8 @@ FORCED_INLINE void scatter_curved(vrgb* result, const struct FrameParams* f, con
   int i = 0;
 #if JITTER
   vint axis_x, axis_y;
-  rotated_axis(tables->rotations, rotation_index(x + int_lane_numbers(), (vint)(y), tables->seed), s->axis, &axis_x,
-               &axis_y);
+  rotated_axis(tables->rotations, rotation_index(x + int_lane_numbers(), (vint)(y + f->first_row), tables->seed),
+               s->axis, &axis_x, &axis_y);
   for (; i < level->rotated_pairs; ++i) {
     const vint dx = (offsets[i] * axis_x + 2048) >> 12;
     const vint dy = (offsets[i] * axis_y + 2048) >> 12;

@@ -59,7 +59,7 @@ kernel void scatter_y(struct FrameParams f, struct WindowParams window, global u
   w.segment = vertical_segment;
   const Pass pass = pass_from(&w, 1, 0);
   const int x = get_global_id(0);
-  const int y = get_global_id(1);
+  const int y = f.own_begin + get_global_id(1);
   if (x >= f.width) return;
   vrgb result[TERMS];
   scatter_pixels(result, &f, &pass, &tables, x, y);

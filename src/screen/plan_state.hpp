@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 #include <utility>
+#include <vector>
 
 #include "dermis/plan.hpp"
 #include "opencl/memory_pool.hpp"
@@ -36,13 +37,19 @@ struct Plan::State {
 
   RunSizes run_sizes(int width, int height) const {
     const FrameSize frame{width, height};
-    return {frame, method->buffer_bytes(frame), settings.has_curvature()};
+    return {frame, method->buffers(frame), settings.has_curvature()};
+  }
+
+  /// Whether light waits for its output in every frame, whatever the outputs lie over.
+  bool always_defers() const {
+    return settings.options.bad_pixels == BadPixels::error || !method->by_tiles() || settings.frames.views ||
+           settings.options.sums_weights || settings.has_curvature();
   }
 
   std::size_t scratch_bytes(int width, int height) const {
-    const bool defers =
-        settings.options.bad_pixels == BadPixels::error || !method->by_tiles() || settings.has_curvature();
-    return run_sizes(width, height).bytes(defers);
+    std::size_t sum = 0;
+    for (const BufferSize& its : run_sizes(width, height).buffers(always_defers())) sum += its.bytes;
+    return sum;
   }
 
  private:

@@ -20,10 +20,11 @@ class SeparablePixels final : public SeparableMethod {
     return {{"frame/prepare.cl", "separable/pixel.cl"}, build_constant("TERMS", terms)};
   }
 
-  std::vector<std::size_t> buffer_bytes(const FrameSize& frame) const override {
+  std::vector<BufferSize> buffers(const FrameSize& frame) const override {
     const std::size_t plane_bytes = frame.plane() * sizeof(float);
-    return {window_bytes(frame_window(frame, settings_.has_pixel_width()).planes), 3 * plane_bytes * terms_,
-            plane_bytes};
+    return {{"window", window_bytes(frame_window(frame, settings_.has_pixel_width()).planes)},
+            {"light between the passes", 3 * plane_bytes * terms_},
+            {"vertical segments", plane_bytes}};
   }
 
   void prepare(FrameRun& run) const override {
@@ -39,7 +40,7 @@ class SeparablePixels final : public SeparableMethod {
     run.launch(shears, run.size().blocks_x(), run.size().height, 0);
   }
 
-  void scatter(FrameRun& run, RowRange) const override {
+  void scatter(FrameRun& run, RowRange rows) const override {
     const auto& buffers = run.memory().method;
     const cl::Buffer axes = rotations(run);
     cl::Kernel horizontal(run.program(), "scatter_x");
@@ -50,7 +51,7 @@ class SeparablePixels final : public SeparableMethod {
     set_arguments(vertical, run.frame(), run.window(), buffers[window], run.materials(), run.levels(), taps_at_, taps_,
                   axes, settings_.options.seed, run.memory().passes, buffers[between], buffers[vertical_segments],
                   run.deferred());
-    run.launch(vertical, run.size().width, run.size().height, 0);
+    run.launch(vertical, run.size().width, rows.count, 0);
   }
 };
 
