@@ -78,6 +78,19 @@ typedef long long Bytes;
 // The samples of a disc may read blocks of 1, 2, 4, ... pixels a side: so many sizes.
 #define MOST_TEXEL_LEVELS 9
 
+// The separable passes on GPUs: a work-group of so many work-items computes a line of the horizontal pass, and some
+// columns of a strip of rows in the vertical one. They lie in GROUP_BLOCKS blocks at most.
+#define GROUP_ITEMS 256
+#define LINE_COLUMNS GROUP_ITEMS
+#define COLUMN_COLUMNS 8
+#define COLUMN_ROWS 128
+#define GROUP_BLOCKS 16
+
+// A copy of the taps of a level in local memory begins at a multiple of so many words, whole CubicWeights,
+// NearnessParams and FlatWeights, and ends with its TapLevelParams.
+#define TAP_WORDS 9
+#define LEVEL_WORDS 12
+
 // Formats of a value, as dermis::Format.
 #define FORMAT_F16 0
 #define FORMAT_F32 1

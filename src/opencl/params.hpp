@@ -12,6 +12,7 @@ static_assert(sizeof(FrameLayouts) == 10 * sizeof(ImageParams));
 static_assert(sizeof(ViewLayouts) == 5 * sizeof(ImageParams));
 static_assert(sizeof(ViewParams) == 2 * sizeof(int) + 12 * sizeof(float));
 static_assert(sizeof(RunFlags) == 7 * sizeof(int));
+static_assert(sizeof(TapLevelParams) == LEVEL_WORDS * sizeof(int));
 static_assert(sizeof(FrameParams) == 8 * sizeof(int) + 10 * sizeof(float));
 static_assert(sizeof(TileParams) == 6 * sizeof(int));
 static_assert(sizeof(WindowLayout) == 8 * sizeof(Bytes));

@@ -53,6 +53,7 @@ class FrameRun {
   const cl::Context& context() const { return context_; }
   const cl::CommandQueue& queue() const { return queue_; }
   const cl::Program& program() const { return plan_.program; }
+  const std::vector<cl::Program>& more_programs() const { return plan_.more_programs; }
   const cl::Buffer& materials() const { return plan_.materials; }
   const cl::Buffer& levels() const { return plan_.levels; }
   const Camera& camera() const { return camera_; }

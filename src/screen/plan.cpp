@@ -116,6 +116,8 @@ std::unique_ptr<Plan::State> build_plan(PlanSettings its_settings) {
   };
   auto program = build(state->sources.method);
   auto classification = build(state->sources.classification);
+  std::vector<std::future<cl::Program>> more;
+  for (const ProgramSource& its : state->sources.more) more.push_back(build(its));
   const MaterialTables tables = fit_taps(settings, method, terms);
   state->materials = upload(context, tables.materials);
   state->levels = upload(context, tables.levels);
@@ -127,6 +129,7 @@ std::unique_ptr<Plan::State> build_plan(PlanSettings its_settings) {
   method.upload(context, tables);
   state->classification = classification.get();
   state->program = program.get();
+  for (auto& its : more) state->more_programs.push_back(its.get());
   if (settings.frames.views) state->hidden_light = std::make_shared<const HiddenLight>(settings);
   return state;
 }

@@ -26,6 +26,7 @@ struct Plan::State {
   PlanPrograms sources;
   cl::Program classification;
   cl::Program program;                              ///< of the method
+  std::vector<cl::Program> more_programs;           ///< of the method
   cl::Buffer materials;                             ///< MaterialParams
   cl::Buffer levels;                                ///< TapLevelParams
   cl::Buffer curvatures;                            ///< CurvatureParams, if settings.has_curvature()

@@ -32,6 +32,8 @@ class ScatterMethod {
   virtual int vector_width() const;
   /// Kernel files, and build constants beside those of every plan. Every material has so many terms.
   virtual ProgramSource kernels(int terms) const = 0;
+  /// Further programs, which are built of other constants.
+  virtual std::vector<ProgramSource> more_kernels(int) const { return {}; }
 
   /// Takes what the memory of a run depends on from the tables. Called once, before all that follow.
   virtual void measure(const MaterialTables&) {}
