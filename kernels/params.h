@@ -51,7 +51,9 @@ typedef long long Bytes;
 #define COUNTER_UNLIT 8        // pixels
 #define COUNTER_REACH 9        // px that taps of the vertical pass go at most
 #define COUNTER_REACHED 10     // pixels that hidden light reaches
-#define RUN_COUNTERS 11
+#define COUNTER_FINEST_X 11    // most pixels per mm, as in BlockParams, as the bits of a float above 0
+#define COUNTER_FINEST_Y 12
+#define RUN_COUNTERS 13
 
 // Kinds of tile, as dermis::TileKind.
 #define TILE_WITHOUT_MATERIAL 0
@@ -75,6 +77,19 @@ typedef long long Bytes;
 
 // The samples of a disc may read blocks of 1, 2, 4, ... pixels a side: so many sizes.
 #define MOST_TEXEL_LEVELS 9
+
+// The separable passes on GPUs: a work-group of so many work-items computes a line of the horizontal pass, and some
+// columns of a strip of rows in the vertical one. They lie in GROUP_BLOCKS blocks at most.
+#define GROUP_ITEMS 256
+#define LINE_COLUMNS GROUP_ITEMS
+#define COLUMN_COLUMNS 8
+#define COLUMN_ROWS 128
+#define GROUP_BLOCKS 16
+
+// A copy of the taps of a level in local memory begins at a multiple of so many words, whole CubicWeights,
+// NearnessParams and FlatWeights, and ends with its TapLevelParams.
+#define TAP_WORDS 9
+#define LEVEL_WORDS 12
 
 // Formats of a value, as dermis::Format.
 #define FORMAT_F16 0
@@ -195,13 +210,17 @@ struct RunFlags {
   int reuses;      // tiles that have not changed since the frame before keep its deferred light
 };
 
-// The size and the camera of a frame. A pixel at view depth z spans mm_per_px + slope * z, in x and in y.
+// The size and the camera of a frame, or of a band of its rows: then rows of kernels count from the first one of the
+// band, and light is computed, and pixels are counted, in its own rows. A pixel at view depth z spans
+// mm_per_px + slope * z, in x and in y.
 struct FrameParams {
   int width;
   int height;
   int stride;  // of planes as large as the frame, elements
   int blocks_x;
   int blocks_y;
+  int first_row;  // of the band in the frame: a multiple of BLOCK
+  int own_begin, own_end;
   float mm_per_unit;
   float mm_per_px_x;
   float mm_per_px_y;

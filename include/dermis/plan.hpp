@@ -114,6 +114,10 @@ struct Options {
   /// Pixels of a tile: a multiple of 16 across; 0 = what suits the device. The result does not depend on it.
   int tile_width = 0;
   int tile_height = 0;
+  /// MB of device memory that a run may take, with what it copies of images: 0..1000000; 0: all that the device has.
+  /// Images in host memory that need more, or a buffer larger than the device has, are filtered in bands of rows that
+  /// overlap by how far light goes, with the same bits but where uniform light is skipped.
+  int device_memory_mb = 0;
   /// A folder in which taps are kept for later processes, which then need not fit them: at most 64 MB, of which the
   /// longest unused go first. It is made if it is missing. A folder that can_keep_taps refuses, and files that are
   /// damaged, are as if they were not there; the result does not depend on it. Empty: nothing is kept.
@@ -185,7 +189,7 @@ inline constexpr std::array<Named<TileKind>, 7> word_table<TileKind> = {
 /// The tiles of a run.
 struct TileMap {
   int tile_width = 0;   ///< px
-  int tile_height = 0;  ///< px; fitted to the pixels that scatter and to their taps, unless the options give it
+  int tile_height = 0;  ///< px; fitted to pixels that scatter and to their taps unless options give it; 16 of bands
   int columns = 0;
   int rows = 0;
   std::vector<TileKind> kinds;  ///< row by row
@@ -208,6 +212,7 @@ struct Stats {
   double total_ms = 0;     ///< wall clock, transfers included
 
   TileMap tiles;  ///< empty if the method is not separable or the device works pixel by pixel
+  int bands = 1;  ///< of rows, filtered one after the other as memory allows
 
   std::int64_t pixels = 0;
   std::int64_t pixels_scattered = 0;  ///< those that are bad included
@@ -257,19 +262,21 @@ class Plan {
 
   /// Filters one frame of host memory or of buffers and waits for it. Writes only the pixels of the outputs.
   /// Throws Error(usage) if the frame is not as described or malformed, Error(device) on a device error.
-  /// Returns without writing anything if `progress` returned false.
+  /// Returns without writing anything if `progress` returned false; in bands without writing those that are not done.
   Stats run(const Frame& frame, const Progress& progress = {}) const;
 
   /// Filters the next frame of a sequence: tiles of which nothing within reach has changed since the last run with
   /// `reuse` take the light of that run, with the same bits. All tiles are computed if there was no such run, if it was
   /// of another plan, size, camera or scale or failed, and always if the frame has views, the method is not separable
-  /// or the device works pixel by pixel. Bad pixels are counted, and refused, in tiles that are filtered.
+  /// or the device works pixel by pixel, or the frame runs in bands. Bad pixels are counted, and refused, in tiles that
+  /// are filtered.
   Stats run(const Frame& frame, Reuse& reuse, const Progress& progress = {}) const;
 
   /// Puts the work of `run` on the caller's queue, which is of the plan's context and device, to start after the events
   /// in `wait_for`. All images are buffers. Never blocks. Frames of a plan share its device memory, so they run one
-  /// after the other, in the order of these calls; once one is done nothing is allocated for the next. Throws
-  /// Error(usage) also if an image is in host memory, if bad pixels are to be errors, or if the frame has views.
+  /// after the other, in the order of these calls; once one is done nothing is allocated for the next. There are no
+  /// bands: without the memory for all rows it throws Error(device). Throws Error(usage) also if an image is in host
+  /// memory, if bad pixels are to be errors, or if the frame has views.
   Event enqueue(const Frame& frame, cl_command_queue queue, std::span<const cl_event> wait_for = {}) const;
 
   /// The options with what a quality or a tolerance has made of them.

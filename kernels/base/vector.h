@@ -64,21 +64,23 @@ typedef vfloat unaligned_floats __attribute__((aligned(4)));
 typedef JOIN(uchar, V) unaligned_bytes __attribute__((aligned(1)));
 #endif
 
-FORCED_INLINE vfloat load_floats(global const float* p) {
 #if V == 1
-  return *p;
+// From memory of any kind, which no function could take.
+#define load_floats(p) (*(p))
+#define load_bytes(p) ((vint) * (p))
+#define load_rgb(plane, plane_size, at) \
+  ((vrgb){(plane)[at], (plane)[(plane_size) + (at)], (plane)[2 * (plane_size) + (at)]})
 #else
-  return *(global const unaligned_floats*)p;
-#endif
-}
+FORCED_INLINE vfloat load_floats(global const float* p) { return *(global const unaligned_floats*)p; }
 
-FORCED_INLINE vint load_bytes(global const uchar* p) {
-#if V == 1
-  return *p;
-#else
-  return JOIN(convert_int, V)(*(global const unaligned_bytes*)p);
-#endif
+FORCED_INLINE vint load_bytes(global const uchar* p) { return JOIN(convert_int, V)(*(global const unaligned_bytes*)p); }
+
+FORCED_INLINE vrgb load_rgb(global const float* plane, size_t plane_size, size_t at) {
+  const vrgb value = {load_floats(plane + at), load_floats(plane + plane_size + at),
+                      load_floats(plane + 2 * plane_size + at)};
+  return value;
 }
+#endif
 
 static inline void store_bytes(global uchar* p, vint value) {
 #if V == 1
@@ -208,12 +210,6 @@ FORCED_INLINE vrgb sum_rgb(vrgb a, vrgb b) {
 FORCED_INLINE vrgb broadcast_rgb(vfloat value) {
   const vrgb result = {value, value, value};
   return result;
-}
-
-FORCED_INLINE vrgb load_rgb(global const float* plane, size_t plane_size, size_t at) {
-  const vrgb value = {load_floats(plane + at), load_floats(plane + plane_size + at),
-                      load_floats(plane + 2 * plane_size + at)};
-  return value;
 }
 
 FORCED_INLINE void store_rgb(global float* plane, size_t plane_size, size_t at, vrgb value) {

@@ -43,7 +43,7 @@ typedef struct {
 
 static inline BlockView view_of(const struct FrameParams* f, int block_x, int block_y, int axis) {
   const float ray_x = f->slope_x * (block_x * BLOCK + 0.5f * BLOCK - f->center_x);
-  const float ray_y = f->slope_y * (block_y * BLOCK + 0.5f * BLOCK - f->center_y);
+  const float ray_y = f->slope_y * (block_y * BLOCK + f->first_row + 0.5f * BLOCK - f->center_y);
   const BlockView x = {ray_x, ray_y, f->slope_x, f->slope_y, f->mm_per_px_x, f->mm_per_px_y};
   const BlockView y = {ray_y, ray_x, f->slope_y, f->slope_x, f->mm_per_px_y, f->mm_per_px_x};
   return axis == 0 ? x : y;
@@ -224,6 +224,8 @@ kernel void choose_passes(struct FrameParams f, int blocks_per_item, global cons
   int flat = 0;
   int channels = 0;
   int reach = 0;
+  float finest_x = 0.0f;
+  float finest_y = 0.0f;
   for (int block_x = first; block_x < min(first + blocks_per_item, f.blocks_x); ++block_x) {
     const int block = block_y * f.blocks_x + block_x;
     passes[block].x = pass_over(&f, materials, levels, blocks, block_x, block_y, 0);
@@ -236,10 +238,15 @@ kernel void choose_passes(struct FrameParams f, int blocks_per_item, global cons
                                               channels_left_alone(materials, levels, blocks + block, passes[block].y));
     const int block_class = max(passes[block].x.block_class, passes[block].y.block_class);
     if (block_class == CLASS_FLAT) flat += blocks[block].scattered;
+    finest_x = fmax(finest_x, blocks[block].finest_x);
+    finest_y = fmax(finest_y, blocks[block].finest_y);
   }
+  if (block_y * BLOCK < f.own_begin || block_y * BLOCK >= f.own_end) return;
   atomic_add(counters + COUNTER_SCATTERED, scattered);
   atomic_add(counters + COUNTER_NARROW, narrow);
   atomic_add(counters + COUNTER_FLAT, flat);
   atomic_add(counters + COUNTER_CHANNELS, channels);
   atomic_max(counters + COUNTER_REACH, reach);
+  atomic_max(counters + COUNTER_FINEST_X, as_int(finest_x));
+  atomic_max(counters + COUNTER_FINEST_Y, as_int(finest_y));
 }

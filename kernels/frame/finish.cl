@@ -1,4 +1,5 @@
-// finish: writes deferred light to the caller's images. A work-item has a run of `columns` pixels of a row.
+// finish: writes deferred light of the own rows to the caller's images. A work-item has a run of `columns` pixels of a
+// row.
 #pragma OPENCL FP_CONTRACT OFF
 #include "frame/compose.h"
 
@@ -17,12 +18,13 @@ kernel void finish(struct FrameParams f, struct FrameLayouts layouts, global con
                           .beauty = beauty,
                           .material_ids = material_ids};
   const FrameOutputs out = {&layouts, &flags, scattered, result};
-  const int y = get_global_id(1);
+  const int y = f.own_begin + get_global_id(1);
   const InputRows rows = input_rows(&f, &in, y);
   const int x_begin = (int)get_global_id(0) * columns;
   const int x_end = min(x_begin + columns, f.width);
   const int copies = flags.copies;
-  global const uchar* kinds_of_row = copies ? kinds : kinds + y / counters[COUNTER_TILE_HEIGHT] * tiles.columns;
+  global const uchar* kinds_of_row =
+      copies ? kinds : kinds + (y - f.own_begin) / counters[COUNTER_TILE_HEIGHT] * tiles.columns;
   global const struct BlockPasses* passes_of_row = passes + y / BLOCK * f.blocks_x;
   int next = x_begin;
   for (int begin = x_begin; begin < x_end; begin = next) {

@@ -76,14 +76,3 @@ FORCED_INLINE LoadedLight load_light(const Window* w, const struct FrameParams* 
   store_bytes(w->material + at, loaded.material);
   return loaded;
 }
-
-// The reciprocal of the factor by which the profile of each lane and channel is wider.
-static inline vrgb width_reciprocal(const Window* w, size_t at) {
-#if PIXEL_WIDTH
-  const vrgb k = load_rgb(w->width, w->plane, at);
-  const vrgb reciprocal = {1.0f / k.r, 1.0f / k.g, 1.0f / k.b};
-  return reciprocal;
-#else
-  return broadcast_rgb((vfloat)(1.0f));
-#endif
-}

@@ -26,5 +26,5 @@ kernel void prepare(struct FrameParams f, struct FrameLayouts layouts, global co
     EACH_LANE(COUNT_LANE)
 #undef COUNT_LANE
   }
-  if (count > 0) atomic_add(counters + COUNTER_BAD, count);
+  if (count > 0 && y >= f.own_begin && y < f.own_end) atomic_add(counters + COUNTER_BAD, count);
 }

@@ -13,7 +13,7 @@ FORCED_INLINE Points points_at(const struct FrameParams* f, vfloat depth, int x,
   Points p;
   p.z = depth;
   p.x_per_z = f->slope_x * (convert_vfloat(x + int_lane_numbers()) + 0.5f - f->center_x);
-  p.y_per_z = (vfloat)(f->slope_y * ((float)y + 0.5f - f->center_y));
+  p.y_per_z = (vfloat)(f->slope_y * ((float)(y + f->first_row) + 0.5f - f->center_y));
   return p;
 }
 

@@ -189,7 +189,7 @@ static inline vrgb gather(const Pixel* pixel, global const struct DiscParams* it
   global const struct SampleParams* set = samples + its->first_sample[which] + start * count;
   vrgb mean = broadcast_rgb(0.0f);
   for (int i = 0; i < counts->seeds; ++i) {
-    const float2 turn = turns[rotation_index(pixel->x, pixel->y, counts->seed + i)];
+    const float2 turn = turns[rotation_index(pixel->x, pixel->y + pixel->f->first_row, counts->seed + i)];
     Sum sum = {product(pixel->own, own_light), pixel->own};
     add_samples(&sum, pixel, turned(d, turn), set, count);
 #if SUMS_WEIGHTS

@@ -108,7 +108,8 @@ kernel void dark_blocks(struct FrameParams f, global const struct DiscParams* di
     if (block->scattering[m / 32] >> (m % 32) & 1) reach_mm = fmax(reach_mm, discs[m].reach_mm);
   }
   const float from_center_x = fmax(fabs(block_x * BLOCK - f.center_x), fabs(block_x * BLOCK + BLOCK - f.center_x));
-  const float from_center_y = fmax(fabs(block_y * BLOCK - f.center_y), fabs(block_y * BLOCK + BLOCK - f.center_y));
+  const int top = block_y * BLOCK + f.first_row;
+  const float from_center_y = fmax(fabs(top - f.center_y), fabs(top + BLOCK - f.center_y));
   const float ray_x = f.slope_x * from_center_x;
   const float ray_y = f.slope_y * from_center_y;
   const float ray_length = sqrt(fma(ray_x, ray_x, fma(ray_y, ray_y, 1.0f)));

@@ -31,7 +31,7 @@ typedef struct {
   vrgb light[TERMS];
 } Tap;
 
-FORCED_INLINE vfloat load_tap(const Pass* s, global const float* plane, const Place* place) {
+FORCED_INLINE vfloat load_tap(const Pass* s, PIXELS const float* plane, const Place* place) {
 #if V > SHEAR_RUN && SHEARED
   if (s->axis == 0) return load_floats(plane + place->at[0]);
   const vfloat value = {*(global const run_floats*)(plane + place->at[0]),
@@ -42,7 +42,7 @@ FORCED_INLINE vfloat load_tap(const Pass* s, global const float* plane, const Pl
 #endif
 }
 
-FORCED_INLINE vint load_tap_bytes(global const uchar* plane, const Place* place) {
+FORCED_INLINE vint load_tap_bytes(PIXELS const uchar* plane, const Place* place) {
 #if V > SHEAR_RUN
   const JOIN(uchar, V)
       value = {*(global const run_bytes*)(plane + place->at[0]), *(global const run_bytes*)(plane + place->at[1])};
@@ -53,27 +53,27 @@ FORCED_INLINE vint load_tap_bytes(global const uchar* plane, const Place* place)
 }
 
 FORCED_INLINE vrgb load_tap_light(const Pass* s, int t, const Place* place) {
-  global const float* plane = s->from->light + t * s->next_light;
+  PIXELS const float* plane = s->from->light + t * s->next_light;
   const vrgb value = {load_tap(s, plane, place), load_tap(s, plane + s->from->plane, place),
                       load_tap(s, plane + 2 * s->from->plane, place)};
   return value;
 }
 
 // A + t (B + t C) of each channel.
-FORCED_INLINE vrgb cubic_over_t(global const struct CubicWeight* its, vrgb t) {
+FORCED_INLINE vrgb cubic_over_t(TAPS const struct CubicWeight* its, vrgb t) {
   const vrgb result = {fma(t.r, fma(t.r, (vfloat)(its->c[0]), (vfloat)(its->b[0])), (vfloat)(its->a[0])),
                        fma(t.g, fma(t.g, (vfloat)(its->c[1]), (vfloat)(its->b[1])), (vfloat)(its->a[1])),
                        fma(t.b, fma(t.b, (vfloat)(its->c[2]), (vfloat)(its->b[2])), (vfloat)(its->a[2]))};
   return result;
 }
 
-FORCED_INLINE vfloat nearness_of(global const struct NearnessParams* its, vfloat softened) {
+FORCED_INLINE vfloat nearness_of(TAPS const struct NearnessParams* its, vfloat softened) {
   return higher(its->scale / softened - its->end, (vfloat)(0.0f));
 }
 
 // Adds a tap of each lane to the sums. `clean`: it lies on the material or in a gap, else only the lanes `there` count.
-FORCED_INLINE void add_tap(Sums* sums, const Target* own, global const struct NearnessParams* nearness,
-                           global const struct CubicWeight* weights, const Tap* tap, vfloat offset2, vint there,
+FORCED_INLINE void add_tap(Sums* sums, const Target* own, TAPS const struct NearnessParams* nearness,
+                           TAPS const struct CubicWeight* weights, const Tap* tap, vfloat offset2, vint there,
                            const int clean) {
   // The square of the distance, see METHODS.md, plus the softening.
   const vfloat square = fma(own->spread, tap->z, (vfloat)(own->square_mm2));
@@ -104,7 +104,7 @@ FORCED_INLINE void add_tap(Sums* sums, const Target* own, global const struct Ne
 
 // Adds the pixels an offset away along the pass. `shear`: of each run of lanes, of the vertical pass.
 FORCED_INLINE void add_shifted(Sums* sums, const struct FrameParams* f, const Pass* s, const Target* own,
-                               global const struct NearnessParams* nearness, global const struct CubicWeight* weights,
+                               TAPS const struct NearnessParams* nearness, TAPS const struct CubicWeight* weights,
                                vint material, const int* shear, int x, int y, int offset, const int clean) {
   const Window* w = s->from;
   Place place;
@@ -165,12 +165,12 @@ FORCED_INLINE void add_shifted(Sums* sums, const struct FrameParams* f, const Pa
 // Scatters the lanes of one material on a curved surface. `clean`: all taps fall on it or into gaps, where there is no
 // length of surface.
 FORCED_INLINE void scatter_curved(vrgb* result, const struct FrameParams* f, const Pass* s, const Tables* tables,
-                                  global const struct TapLevelParams* level, global const struct TermParams* terms,
+                                  TAPS const struct TapLevelParams* level, global const struct TermParams* terms,
                                   vint material, int x, int y, const int clean) {
   const size_t at = pixel_at(s->from, x, y);
-  global const struct NearnessParams* nearness = tables->nearness + level->first_nearness;
-  global const struct CubicWeight* weights = tables->weights + level->first_weight;
-  global const int* offsets = tables->offsets + level->first_offset;
+  TAPS const struct NearnessParams* nearness = tables->nearness + level->first_nearness;
+  TAPS const struct CubicWeight* weights = tables->weights + level->first_weight;
+  TAPS const int* offsets = tables->offsets + level->first_offset;
   Target own;
   own.z = load_floats(s->from->depth + at);
   own.ray_depth = load_floats(s->from->ray_depth + at);
@@ -199,8 +199,8 @@ FORCED_INLINE void scatter_curved(vrgb* result, const struct FrameParams* f, con
   int i = 0;
 #if JITTER
   vint axis_x, axis_y;
-  rotated_axis(tables->rotations, rotation_index(x + int_lane_numbers(), (vint)(y), tables->seed), s->axis, &axis_x,
-               &axis_y);
+  rotated_axis(tables->rotations, rotation_index(x + int_lane_numbers(), (vint)(y + f->first_row), tables->seed),
+               s->axis, &axis_x, &axis_y);
   for (; i < level->rotated_pairs; ++i) {
     const vint dx = (offsets[i] * axis_x + 2048) >> 12;
     const vint dy = (offsets[i] * axis_y + 2048) >> 12;
@@ -213,7 +213,9 @@ FORCED_INLINE void scatter_curved(vrgb* result, const struct FrameParams* f, con
   }
 #endif
   int shear[SHEAR_RUNS];
-  for (int run = 0; run < SHEAR_RUNS; ++run) shear[run] = SHEARED ? s->from->shear[at / SHEAR_RUN + run] : 0;
+  for (int run = 0; run < SHEAR_RUNS; ++run) {
+    shear[run] = SHEARED && s->axis == 1 ? s->from->shear[at / SHEAR_RUN + run] : 0;
+  }
 #pragma nounroll
   for (; i < level->pairs; ++i) {
     ++nearness;

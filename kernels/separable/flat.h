@@ -1,77 +1,12 @@
 // Flat blocks: constant weights. See Taps in tap_tables.hpp.
-#include "classify/tap_level.h"
 #include "separable/pass.h"
-
-// Adds the pairs from `i` on, in which only some channels have weights.
-SHARED void add_last_pairs(vrgb* sums, const Pass* s, global const struct TapLevelParams* level,
-                           global const int* offsets, global const struct FlatWeight* weights, int i, int x, int y) {
-#pragma nounroll
-  for (; i < level->pairs; ++i) {
-    const TapPair taps = pair_at(s, x, y, offsets, i);
-    weights += TERMS;
-#define ADD_CHANNEL(name, channel)                                                                   \
-  if (i < level->channel_pairs[channel]) {                                                           \
-    for (int t = 0; t < TERMS; ++t) {                                                                \
-      const ChannelPair pair = load_channel_pair(s, t, channel, taps);                               \
-      sums[t].name = fma((vfloat)(weights[t].rgb[channel]), pair.after + pair.before, sums[t].name); \
-    }                                                                                                \
-  }
-    ADD_CHANNEL(r, 0)
-    ADD_CHANNEL(g, 1)
-    ADD_CHANNEL(b, 2)
-#undef ADD_CHANNEL
-  }
-}
-
-// A flat block is scattered so many vectors of pixels at a time, so that weights are loaded less often.
-#define AT_ONCE 2
-
-typedef struct {
-  int x, y;
-} Pixel;
-
-// Scatters a flat block where every tap falls on the material.
-FORCED_INLINE void scatter_clean(vrgb (*result)[TERMS], const Pass* s, global const struct TapLevelParams* level,
-                                 global const int* offsets, global const struct FlatWeight* weights, const Pixel* p) {
-#pragma unroll
-  for (int n = 0; n < AT_ONCE; ++n) {
-#pragma unroll
-    for (int t = 0; t < TERMS; ++t) {
-      result[n][t] = scaled(weights[t].rgb, load_term(s, t, pixel_at(s->from, p[n].x, p[n].y)));
-    }
-  }
-  const int full_pairs = full_pairs_of(level);
-  int i = 0;
-#pragma nounroll
-  for (; i < full_pairs; ++i) {
-    weights += TERMS;
-#pragma unroll
-    for (int n = 0; n < AT_ONCE; ++n) {
-      const TapPair taps = pair_at(s, p[n].x, p[n].y, offsets, i);
-      vrgb both;
-#pragma unroll
-      for (int t = 0; t < TERMS; ++t) {
-        if (t == 0 || s->axis == 1) both = sum_rgb(load_term(s, t, taps.after), load_term(s, t, taps.before));
-        result[n][t] = add_scaled(weights[t].rgb, both, result[n][t]);
-      }
-    }
-  }
-  if (i < level->pairs) {
-    vrgb rest[TERMS];
-    for (int n = 0; n < AT_ONCE; ++n) {
-      for (int t = 0; t < TERMS; ++t) rest[t] = result[n][t];
-      add_last_pairs(rest, s, level, offsets, weights, i, p[n].x, p[n].y);
-      for (int t = 0; t < TERMS; ++t) result[n][t] = rest[t];
-    }
-  }
-}
 
 // Scatters a flat block where some taps fall on something else. Where none does, it gives the bits of scatter_clean.
 FORCED_INLINE void scatter_flat(vrgb* result, const struct FrameParams* f, const Pass* s, const Tables* tables,
-                                global const struct TapLevelParams* level, global const struct FlatWeight* weights,
+                                TAPS const struct TapLevelParams* level, TAPS const struct FlatWeight* weights,
                                 global const struct TermParams* terms, vint material, int x, int y) {
   const size_t at = pixel_at(s->from, x, y);
-  global const int* offsets = tables->offsets + level->first_offset;
+  TAPS const int* offsets = tables->offsets + level->first_offset;
   vrgb own[TERMS];
   Sums sums;
 #pragma unroll

@@ -1,6 +1,13 @@
 // One separable pass: the tables and the pixels that it reads, and its sums.
-#include "frame/load.h"
 #include "frame/shear.h"
+#include "frame/window.h"
+
+// On GPUs a work-group may copy the taps of its blocks.
+#if LOCAL_TAPS
+#define TAPS local
+#else
+#define TAPS global
+#endif
 
 #ifndef TERMS
 #error "TERMS: of every material; those that it does not have weigh nothing"
@@ -11,10 +18,10 @@ typedef struct {
   global const struct MaterialParams* materials;
   global const struct TermParams* terms;
   global const struct TapLevelParams* levels;
-  global const int* offsets;
-  global const struct NearnessParams* nearness;
-  global const struct CubicWeight* weights;
-  global const struct FlatWeight* flat_weights;
+  TAPS const int* offsets;
+  TAPS const struct NearnessParams* nearness;
+  TAPS const struct CubicWeight* weights;
+  TAPS const struct FlatWeight* flat_weights;
   global const struct RotationParams* rotations;
   global const struct BlockPasses* passes;
   uint seed;
@@ -25,16 +32,18 @@ static inline Tables tables_in(const struct TapTables* at, global const uchar* t
                                global const struct TapLevelParams* levels,
                                global const struct RotationParams* rotations, uint seed,
                                global const struct BlockPasses* passes) {
-  const Tables tables = {materials,
-                         (global const struct TermParams*)(taps + at->terms),
-                         levels,
-                         (global const int*)(taps + at->offsets),
-                         (global const struct NearnessParams*)(taps + at->nearness),
-                         (global const struct CubicWeight*)(taps + at->weights),
-                         (global const struct FlatWeight*)(taps + at->flat_weights),
-                         rotations,
-                         passes,
-                         seed};
+  Tables tables = {.materials = materials,
+                   .terms = (global const struct TermParams*)(taps + at->terms),
+                   .levels = levels,
+                   .rotations = rotations,
+                   .passes = passes,
+                   .seed = seed};
+#if !LOCAL_TAPS
+  tables.offsets = (global const int*)(taps + at->offsets);
+  tables.nearness = (global const struct NearnessParams*)(taps + at->nearness);
+  tables.weights = (global const struct CubicWeight*)(taps + at->weights);
+  tables.flat_weights = (global const struct FlatWeight*)(taps + at->flat_weights);
+#endif
   return tables;
 }
 
@@ -74,28 +83,6 @@ FORCED_INLINE size_t tap_at(const Pass* s, int x, int y, int offset) {
   return pixel_at(s->from, tap_x(s, x, offset), y + s->y_step * offset);
 }
 
-// The indices of both taps of a pair.
-typedef struct {
-  size_t before, after;
-} TapPair;
-
-FORCED_INLINE TapPair pair_at(const Pass* s, int x, int y, global const int* offsets, int i) {
-  const int offset = offsets[i];
-  TapPair pair;
-  if (s->axis == 0) {
-    pair.before = tap_at(s, x, y, -offset);
-    pair.after = tap_at(s, x, y, offset);
-  } else {
-    pair.before = x + s->places.row_at[y - offset];
-    pair.after = x + s->places.row_at[y + offset];
-#if SHEARED
-    pair.before += s->places.side_at[2 * i];
-    pair.after += s->places.side_at[2 * i + 1];
-#endif
-  }
-  return pair;
-}
-
 FORCED_INLINE vrgb load_term(const Pass* s, int t, size_t at) {
   return load_rgb(s->from->light + t * s->next_light, s->from->plane, at);
 }
@@ -129,19 +116,20 @@ FORCED_INLINE vint lanes_of(const struct FrameParams* f, const Pass* s, vint mat
   return same & AS_MASK(at_x >= 0) & AS_MASK(at_x < f->width);
 }
 
-FORCED_INLINE vrgb add_scaled(global const float* factor, vrgb a, vrgb b) {
-  const vrgb result = {fma((vfloat)(factor[0]), a.r, b.r), fma((vfloat)(factor[1]), a.g, b.g),
-                       fma((vfloat)(factor[2]), a.b, b.b)};
-  return result;
+static inline struct BlockPass block_pass(const struct FrameParams* f, const Tables* tables, int block_x, int block_y,
+                                          int axis) {
+  global const struct BlockPasses* passes = tables->passes + (size_t)block_y * f->blocks_x + block_x;
+  return axis == 0 ? passes->x : passes->y;
 }
 
-// The light of a pair of taps in one channel.
-typedef struct {
-  vfloat before, after;
-} ChannelPair;
+static inline int first_flat_weight(global const struct TapLevelParams* level, int part) {
+  return level->first_flat_weight + part * (level->pairs + 1) * TERMS;
+}
 
-FORCED_INLINE ChannelPair load_channel_pair(const Pass* s, int t, int channel, TapPair at) {
-  global const float* plane = s->from->light + t * s->next_light + channel * s->from->plane;
-  const ChannelPair pair = {load_floats(plane + at.before), load_floats(plane + at.after)};
-  return pair;
+// The sum of all terms.
+FORCED_INLINE vrgb total_of(global const struct TermParams* terms, const vrgb* values) {
+  vrgb total = scaled(terms[0].scale, values[0]);
+#pragma unroll
+  for (int t = 1; t < TERMS; ++t) total = sum_rgb(total, scaled(terms[t].scale, values[t]));
+  return total;
 }

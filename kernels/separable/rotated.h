@@ -34,7 +34,7 @@ FORCED_INLINE vint load_rotated(Tap* tap, const Pass* s, const RotatedPlace* pla
     LANE(tap->segment, lane) = w->segment[from];                           \
     LANE(its_material, lane) = w->material[from] & MATERIAL_MASK;          \
     for (int t = 0; t < TERMS; ++t) {                                      \
-      global const float* its_light = w->light + t * s->next_light + from; \
+      PIXELS const float* its_light = w->light + t * s->next_light + from; \
       LANE(tap->light[t].r, lane) = its_light[0];                          \
       LANE(tap->light[t].g, lane) = its_light[w->plane];                   \
       LANE(tap->light[t].b, lane) = its_light[2 * w->plane];               \
@@ -47,7 +47,7 @@ FORCED_INLINE vint load_rotated(Tap* tap, const Pass* s, const RotatedPlace* pla
 
 // Adds the pixels (dx, dy) away.
 FORCED_INLINE void add_rotated(Sums* sums, const struct FrameParams* f, const Pass* s, const Target* own,
-                               global const struct NearnessParams* nearness, global const struct CubicWeight* weights,
+                               TAPS const struct NearnessParams* nearness, TAPS const struct CubicWeight* weights,
                                vint material, int x, int y, vint dx, vint dy) {
   const RotatedPlace place = rotated_place(f, s->from, x, y, dx, dy);
   Tap tap;

@@ -3,24 +3,6 @@
 #include "separable/curved.h"
 #include "separable/flat.h"
 
-static inline struct BlockPass block_pass(const struct FrameParams* f, const Tables* tables, int block_x, int block_y,
-                                          int axis) {
-  global const struct BlockPasses* passes = tables->passes + (size_t)block_y * f->blocks_x + block_x;
-  return axis == 0 ? passes->x : passes->y;
-}
-
-static inline int first_flat_weight(global const struct TapLevelParams* level, int part) {
-  return level->first_flat_weight + part * (level->pairs + 1) * TERMS;
-}
-
-// The sum of all terms.
-FORCED_INLINE vrgb total_of(global const struct TermParams* terms, const vrgb* values) {
-  vrgb total = scaled(terms[0].scale, values[0]);
-#pragma unroll
-  for (int t = 1; t < TERMS; ++t) total = sum_rgb(total, scaled(terms[t].scale, values[t]));
-  return total;
-}
-
 // Scatters the lanes of all materials, whatever taps fall on. The horizontal pass has a result for each term, the
 // vertical pass their sum as the first one. It is rarely needed, so that both passes share one function.
 SHARED void scatter_pixels(vrgb* result, const struct FrameParams* f, const Pass* s, const Tables* tables, int x,

@@ -83,8 +83,8 @@ static inline int scatter_tile(const TileRun* run, int tile, global uchar* memor
   const struct FrameParams* f = run->f;
   const struct TileParams* tiles = run->tiles;
   const int x_begin = tile % tiles->columns * tiles->width;
-  const int y_begin = tile / tiles->columns * tiles->height;
-  const Box own = {x_begin, min(x_begin + tiles->width, f->width), y_begin, min(y_begin + tiles->height, f->height)};
+  const int y_begin = f->own_begin + tile / tiles->columns * tiles->height;
+  const Box own = {x_begin, min(x_begin + tiles->width, f->width), y_begin, min(y_begin + tiles->height, f->own_end)};
   int scattered = 0;
   int narrow = 0;
   for (int block_y = own.y_begin / BLOCK; block_y * BLOCK < own.y_end; ++block_y) {
@@ -113,23 +113,26 @@ static inline int scatter_tile(const TileRun* run, int tile, global uchar* memor
 // The time that a frame takes with tiles of a height, in units of that without losses. The horizontal pass, half of the
 // work, is done again for the rows above and below a tile; and at the end workers wait for the last tile, for half the
 // time that it takes. `share` is that of the pixels that scatter, `reach` in rows.
-static inline float time_of_tiles(const struct FrameParams* f, const struct TileParams* tiles, int tile_height,
-                                  float share, int reach) {
-  const int tiles_y = (f->height + tile_height - 1) / tile_height;
-  const float rows = (float)f->height / tiles_y;
+static inline float time_of_tiles(int own_rows, const struct TileParams* tiles, int tile_height, float share,
+                                  int reach) {
+  const int tiles_y = (own_rows + tile_height - 1) / tile_height;
+  const float rows = (float)own_rows / tiles_y;
   const float count = fmax(share * tiles->columns * tiles_y, 1e-6f);
   return (1.0f + reach / rows) * (1.0f + 0.5f * tiles->workers / count);
 }
 
 // Chooses the height of tiles, if the host leaves a choice.
 static inline void fit_tiles(const struct FrameParams* f, struct TileParams* tiles, int pixels_scattered, int reach) {
-  const float share = (float)pixels_scattered / ((float)f->width * f->height);
+  const int own_rows = f->own_end - f->own_begin;
+  const float share = (float)pixels_scattered / ((float)f->width * own_rows);
   int best = tiles->height;
   for (int height = best / 2; height >= tiles->least_height; height /= 2) {
-    if (time_of_tiles(f, tiles, height, share, reach) < time_of_tiles(f, tiles, best, share, reach)) best = height;
+    if (time_of_tiles(own_rows, tiles, height, share, reach) < time_of_tiles(own_rows, tiles, best, share, reach)) {
+      best = height;
+    }
   }
   tiles->height = best;
-  tiles->rows = (f->height + best - 1) / best;
+  tiles->rows = (own_rows + best - 1) / best;
 }
 
 kernel void scatter(struct FrameParams f, struct FrameLayouts layouts, global const uchar* light,

@@ -1,5 +1,6 @@
 // The horizontal pass of a tile over one row, by the classes of its blocks.
 #include "separable/choice.h"
+#include "separable/clean.h"
 #include "separable/tile_light.h"
 
 // Scatters flat blocks of one row.

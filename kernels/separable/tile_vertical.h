@@ -1,5 +1,6 @@
 // The vertical pass of a tile over some rows, by the classes of its blocks, and the outputs of these rows.
 #include "separable/choice.h"
+#include "separable/clean.h"
 #include "separable/tile_outputs.h"
 
 // The vertical pass over blocks where every tap falls on the material.

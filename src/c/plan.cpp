@@ -29,6 +29,7 @@ constexpr std::array numbers = {NamedNumber{"prepare_ms", number_of<&Stats::prep
                                 NamedNumber{"views_ms", number_of<&Stats::views_ms>},
                                 NamedNumber{"finish_ms", number_of<&Stats::finish_ms>},
                                 NamedNumber{"total_ms", number_of<&Stats::total_ms>},
+                                NamedNumber{"bands", number_of<&Stats::bands>},
                                 NamedNumber{"pixels", number_of<&Stats::pixels>},
                                 NamedNumber{"pixels_scattered", number_of<&Stats::pixels_scattered>},
                                 NamedNumber{"pixels_without_material", number_of<&Stats::pixels_without_material>},

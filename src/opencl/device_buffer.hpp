@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <string>
 #include <string_view>
 
 #include "opencl/device.hpp"
@@ -14,6 +16,9 @@ cl::Buffer device_buffer(const Device& device, std::string_view name, std::size_
 
 /// The same over memory of the host.
 cl::Buffer buffer_over(const Device& device, std::string_view name, std::size_t bytes, void* host, cl_mem_flags access);
+
+/// A size as messages have it.
+std::string megabytes(std::uint64_t bytes);
 
 /// Throws as device_buffer if no buffer of the device is as large.
 void check_buffer_size(const Device& device, std::string_view name, std::size_t bytes);

@@ -28,6 +28,12 @@ Extent extent_of(const CallerImage& image, int width, int height) {
   return extent;
 }
 
+HostRange host_range_of(const CallerImage& image, int width, int height) {
+  const Extent extent = extent_of(image, width, height);
+  const auto* host = static_cast<const std::byte*>(image.host);
+  return {host + extent.begin, host + extent.end, !image.is_output, image.is_output, image.name};
+}
+
 std::ptrdiff_t bytes_of_format(const params::ImageParams& image) {
   return static_cast<std::ptrdiff_t>(bytes_of(static_cast<Format>(image.format)));
 }
@@ -99,27 +105,33 @@ void check_image(const CallerImage& image, int width, int height) {
   }
 }
 
-ImageBuffers::ImageBuffers(const Device& device, const cl::CommandQueue& queue, int width, int height,
-                           std::span<const CallerImage> images)
-    : queue_(queue), width_(width), height_(height), buffers_(images.size()), layouts_(images.size()) {
+std::vector<HostRange> host_ranges_of(std::span<const CallerImage> images, int width, int height) {
   std::vector<HostRange> ranges;
-  const auto host_extent = [&](const CallerImage& image) {
-    const Extent extent = extent_of(image, width, height);
-    const auto* host = static_cast<const std::byte*>(image.host);
-    return HostRange{host + extent.begin, host + extent.end, image.is_output, image.name};
-  };
   for (const CallerImage& image : images) {
-    if (image.host != nullptr) ranges.push_back(host_extent(image));
+    if (image.host != nullptr) ranges.push_back(host_range_of(image, width, height));
   }
   std::sort(ranges.begin(), ranges.end(), [](const HostRange& a, const HostRange& b) { return a.begin < b.begin; });
+  std::vector<HostRange> joined;
   for (const HostRange& range : ranges) {
-    if (!host_ranges_.empty() && range.begin < host_ranges_.back().end) {
-      host_ranges_.back().end = std::max(host_ranges_.back().end, range.end);
-      host_ranges_.back().written = host_ranges_.back().written || range.written;
+    if (!joined.empty() && range.begin < joined.back().end) {
+      joined.back().end = std::max(joined.back().end, range.end);
+      joined.back().read = joined.back().read || range.read;
+      joined.back().written = joined.back().written || range.written;
     } else {
-      host_ranges_.push_back(range);
+      joined.push_back(range);
     }
   }
+  return joined;
+}
+
+ImageBuffers::ImageBuffers(const Device& device, const cl::CommandQueue& queue, int width, int height,
+                           std::span<const CallerImage> images)
+    : queue_(queue),
+      width_(width),
+      height_(height),
+      host_ranges_(host_ranges_of(images, width, height)),
+      buffers_(images.size()),
+      layouts_(images.size()) {
   bind_host_ranges(device);
 
   for (std::size_t i = 0; i < images.size(); ++i) {
@@ -131,7 +143,7 @@ ImageBuffers::ImageBuffers(const Device& device, const cl::CommandQueue& queue, 
     if (image.buffer != nullptr) {
       buffers_[i] = cl::Buffer(image.buffer, true);
     } else {
-      const HostRange own = host_extent(image);
+      const HostRange own = host_range_of(image, width, height);
       const auto range = std::find_if(host_ranges_.begin(), host_ranges_.end(),
                                       [&](const HostRange& r) { return own.begin >= r.begin && own.end <= r.end; });
       buffers_[i] = host_buffers_[range - host_ranges_.begin()];

@@ -42,6 +42,20 @@ void check_size(int width, int height, const char* argument);
 /// Throws Error(usage) if kernels cannot read the format or the layout, or a buffer is too small.
 void check_image(const CallerImage& image, int width, int height);
 
+/// Host memory in which some images lie.
+struct HostRange {
+  const std::byte* begin;
+  const std::byte* end;
+  bool read;
+  bool written;
+  const char* name;  ///< of its first image
+
+  std::size_t size() const { return static_cast<std::size_t>(end - begin); }
+};
+
+/// The memory of the images that are in host memory, in order; what overlaps is one range.
+std::vector<HostRange> host_ranges_of(std::span<const CallerImage> images, int width, int height);
+
 /// Buffers for images: those of the caller, buffers over the caller's host memory, or copies of it on a device that has
 /// memory of its own. Host images that overlap, such as channels of one interleaved picture or an output in place of an
 /// input, share a buffer.
@@ -68,15 +82,6 @@ class ImageBuffers {
   void read_back() const;
 
  private:
-  struct HostRange {
-    const std::byte* begin;
-    const std::byte* end;
-    bool written;
-    const char* name;
-
-    std::size_t size() const { return static_cast<std::size_t>(end - begin); }
-  };
-
   void bind_host_ranges(const Device& device);
 
   cl::CommandQueue queue_;

@@ -181,7 +181,7 @@ FrameDescription description_of(const std::vector<std::string>& images) {
 py::dict dict_of(const Stats& stats) {
   return py::dict("prepare_ms"_a = stats.prepare_ms, "classify_ms"_a = stats.classify_ms,
                   "scatter_ms"_a = stats.scatter_ms, "finish_ms"_a = stats.finish_ms, "total_ms"_a = stats.total_ms,
-                  "pixels"_a = stats.pixels, "pixels_scattered"_a = stats.pixels_scattered,
+                  "bands"_a = stats.bands, "pixels"_a = stats.pixels, "pixels_scattered"_a = stats.pixels_scattered,
                   "pixels_without_material"_a = stats.pixels_without_material, "pixels_narrow"_a = stats.pixels_narrow,
                   "pixels_bad"_a = stats.pixels_bad);
 }

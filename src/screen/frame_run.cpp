@@ -11,7 +11,7 @@ namespace dermis {
 
 namespace {
 
-params::FrameParams frame_params(const Frame& frame, const Options& options, const FrameSize& size) {
+params::FrameParams frame_params(const Frame& frame, const Band& band, const Options& options, const FrameSize& size) {
   const Camera& camera = frame.camera;
   params::FrameParams p{};
   p.width = size.width;
@@ -19,6 +19,9 @@ params::FrameParams frame_params(const Frame& frame, const Options& options, con
   p.stride = size.stride();
   p.blocks_x = size.blocks_x();
   p.blocks_y = size.blocks_y();
+  p.first_row = band.rows.first;
+  p.own_begin = band.own.first - band.rows.first;
+  p.own_end = band.own.end() - band.rows.first;
   p.mm_per_unit = static_cast<float>(frame.mm_per_unit);
   if (camera.projection == Camera::Projection::perspective) {
     p.slope_x = static_cast<float>(1 / camera.scale_x);
@@ -35,8 +38,7 @@ params::FrameParams frame_params(const Frame& frame, const Options& options, con
   return p;
 }
 
-params::RunFlags run_flags(const Plan::State& plan, const Frame& frame, const BoundImages& images, bool has_reuse,
-                           bool follows) {
+params::RunFlags run_flags(const Plan::State& plan, const BoundImages& images, bool has_reuse, bool follows) {
   const Options& options = plan.settings.options;
   const bool writes_scattered = images.has(ImageName::scattered);
   const bool writes_result = images.has(ImageName::result);
@@ -45,8 +47,7 @@ params::RunFlags run_flags(const Plan::State& plan, const Frame& frame, const Bo
       (writes_scattered && !(light_is_scattered && images.in_place(ImageName::scattered, ImageName::light))) ||
       (writes_result && !images.in_place(ImageName::result, ImageName::beauty)) ||
       options.bad_pixels == BadPixels::zero;
-  bool defers = !plan.method->by_tiles() || options.bad_pixels == BadPixels::error || has_reuse ||
-                !frame.views.empty() || plan.settings.options.sums_weights || plan.settings.has_curvature();
+  bool defers = plan.always_defers() || has_reuse;
   for (const ImageName input :
        {ImageName::light, ImageName::albedo, ImageName::depth, ImageName::mask, ImageName::matte}) {
     defers = defers || images.output_over(input);
@@ -64,8 +65,8 @@ params::RunFlags run_flags(const Plan::State& plan, const Frame& frame, const Bo
 
 }  // namespace
 
-FrameRun::FrameRun(const Plan::State& plan, const Frame& frame, const BoundImages& images, RunMemory& memory,
-                   cl::CommandQueue queue, std::span<const cl_event> wait_for, Reuse::State* reuse)
+FrameRun::FrameRun(const Plan::State& plan, const Frame& frame, const Band& band, const BoundImages& images,
+                   RunMemory& memory, cl::CommandQueue queue, std::span<const cl_event> wait_for, Reuse::State* reuse)
     : plan_(plan),
       images_(images),
       memory_(memory),
@@ -73,10 +74,10 @@ FrameRun::FrameRun(const Plan::State& plan, const Frame& frame, const BoundImage
       queue_(std::move(queue)),
       camera_(frame.camera),
       item_is_pixel_(plan.settings.item_is_pixel()),
-      frame_(frame_params(frame, plan.settings.options, memory.sizes.frame)),
+      frame_(frame_params(frame, band, plan.settings.options, memory.sizes.frame)),
       window_(frame_window(memory.sizes.frame, plan.settings.has_pixel_width())),
       reuse_(plan.method->by_tiles() ? reuse : nullptr),
-      flags_(run_flags(plan, frame, images, reuse_ != nullptr, reuse_ != nullptr && reuse_->continues(plan, frame))) {
+      flags_(run_flags(plan, images, reuse_ != nullptr, reuse_ != nullptr && reuse_->continues(plan, frame))) {
   for (const cl_event event : wait_for) last_.emplace_back(event, true);
   if (flags_.defers != 0 && reuse_ == nullptr) memory.need_deferred(plan.settings.device);
   deferred_ = reuse_ != nullptr ? reuse_->deferred : flags_.defers != 0 ? memory.deferred : memory.material_ids;
@@ -102,6 +103,12 @@ void FrameRun::include(const FrameRun& other) {
 }
 
 void FrameRun::classify() {
+  find_blocks();
+  if (memory_.sizes.has_curvature) make_entering_light();
+  plan_.method->prepare(*this);
+}
+
+void FrameRun::find_blocks() {
   using enum ImageName;
   phase_ = &events_.classify;
   cl::Event cleared;
@@ -123,8 +130,6 @@ void FrameRun::classify() {
   set_arguments(choose, frame_, blocks_per_item, plan_.materials, plan_.levels, memory_.blocks, memory_.passes,
                 memory_.counters);
   launch_runs(choose, frame_.blocks_x, frame_.blocks_y);
-  if (memory_.sizes.has_curvature) make_entering_light();
-  plan_.method->prepare(*this);
 }
 
 void FrameRun::make_entering_light() {
@@ -167,7 +172,7 @@ std::vector<cl::Buffer> FrameRun::inputs(std::initializer_list<ImageName> names)
 void FrameRun::scatter(int step) {
   phase_ = &events_.scatter;
   const int rows = plan_.method->rows_per_step(size());
-  plan_.method->scatter(*this, {step * rows, std::min(rows, frame_.height - step * rows)});
+  plan_.method->scatter(*this, {frame_.own_begin + step * rows, std::min(rows, own_rows().count - step * rows)});
 }
 
 std::vector<ViewStats> FrameRun::add_hidden_light(const Frame& frame) {
@@ -215,7 +220,7 @@ void FrameRun::write_deferred(const params::RunFlags& flags, const params::TileP
   set_arguments(kernel, frame_, images_.layouts(), images_.buffers({light, albedo, matte, beauty, scattered, result}),
                 flags, memory_.material_ids, memory_.passes, deferred_, tiles, kinds, run_length(frame_.width),
                 memory_.counters);
-  launch_runs(kernel, frame_.width, frame_.height);
+  launch_runs(kernel, frame_.width, own_rows().count);
 }
 
 std::array<cl_int, RUN_COUNTERS> FrameRun::counters() const {
@@ -226,7 +231,7 @@ std::array<cl_int, RUN_COUNTERS> FrameRun::counters() const {
 
 void FrameRun::add_to(Stats& stats) const {
   const auto counted = counters();
-  stats.pixels = static_cast<std::int64_t>(frame_.width) * frame_.height;
+  stats.pixels = static_cast<std::int64_t>(frame_.width) * own_rows().count;
   stats.pixels_scattered = counted[COUNTER_SCATTERED];
   stats.pixels_narrow = counted[COUNTER_NARROW];
   stats.pixels_without_material = stats.pixels - stats.pixels_scattered - stats.pixels_narrow;

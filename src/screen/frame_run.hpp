@@ -24,13 +24,16 @@ struct StepEvents {
 /// Each call puts launches on the queue, to start after those before them; none blocks unless it says so.
 class FrameRun {
  public:
-  /// `reuse` is what the frame before has left, or null.
-  FrameRun(const Plan::State& plan, const Frame& frame, const BoundImages& images, RunMemory& memory,
+  /// `frame` holds the rows of the band, with the camera of the whole frame. `reuse` is what the frame before has left,
+  /// or null.
+  FrameRun(const Plan::State& plan, const Frame& frame, const Band& band, const BoundImages& images, RunMemory& memory,
            cl::CommandQueue queue, std::span<const cl_event> wait_for, Reuse::State* reuse = nullptr);
 
+  /// The first part of classify: blocks and their passes.
+  void find_blocks();
   void classify();
   /// The number of steps that `scatter` is cut into.
-  int scatter_steps() const { return parts_of(frame_.height, plan_.method->rows_per_step(size())); }
+  int scatter_steps() const { return parts_of(own_rows().count, plan_.method->rows_per_step(size())); }
   void scatter(int step);
   /// Adds the light that enters where only the views of the frame look. Blocks.
   std::vector<ViewStats> add_hidden_light(const Frame& frame);
@@ -50,10 +53,12 @@ class FrameRun {
   const cl::Context& context() const { return context_; }
   const cl::CommandQueue& queue() const { return queue_; }
   const cl::Program& program() const { return plan_.program; }
+  const std::vector<cl::Program>& more_programs() const { return plan_.more_programs; }
   const cl::Buffer& materials() const { return plan_.materials; }
   const cl::Buffer& levels() const { return plan_.levels; }
   const Camera& camera() const { return camera_; }
   const FrameSize& size() const { return memory_.sizes.frame; }
+  RowRange own_rows() const { return {frame_.own_begin, frame_.own_end - frame_.own_begin}; }  ///< of the band
   const params::FrameParams& frame() const { return frame_; }
   const params::RunFlags& flags() const { return flags_; }
   const params::WindowParams& window() const { return window_; }  ///< that is the frame

@@ -23,4 +23,32 @@ struct FrameSize {
   bool operator==(const FrameSize&) const = default;
 };
 
+/// Some rows of a frame, or of a band of it.
+struct RowRange {
+  int first, count;
+
+  int end() const { return first + count; }
+};
+
+/// The rows of a frame that are in memory at a time, and those of them whose light is computed: the others are as far
+/// around as light goes.
+struct Band {
+  RowRange rows, own;
+
+  static Band whole(int height) { return {{0, height}, {0, height}}; }
+};
+
+/// A buffer that a run needs.
+struct BufferSize {
+  const char* name;
+  std::size_t bytes;
+
+  bool operator==(const BufferSize&) const = default;
+};
+
+/// Most pixels per mm at a pixel that scatters, times the factor of its profile's width.
+struct Finest {
+  double x, y;
+};
+
 }  // namespace dermis

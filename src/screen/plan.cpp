@@ -2,13 +2,11 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <future>
 #include <string>
 
 #include "dermis/tap_tables.hpp"
 #include "opencl/command_chain.hpp"
-#include "opencl/device_cache.hpp"
 #include "opencl/program.hpp"
 #include "screen/check_materials.hpp"
 #include "screen/curvature.hpp"
@@ -17,6 +15,7 @@
 #include "screen/material_tables.hpp"
 #include "screen/methods/disc_tables.hpp"
 #include "screen/plan_state.hpp"
+#include "screen/run_frame.hpp"
 #include "taps/check_design.hpp"
 #include "views/hidden_light.hpp"
 
@@ -37,6 +36,9 @@ void check_options(const Options& options) {
   }
   if (options.tile_height < 0 || options.tile_height > largest_tile_px) {
     throw Error(ErrorCode::usage, "tile_height", std::to_string(options.tile_height), "0..65536");
+  }
+  if (options.device_memory_mb < 0 || options.device_memory_mb > 1000000) {
+    throw Error(ErrorCode::usage, "device_memory_mb", std::to_string(options.device_memory_mb), "0..1000000");
   }
 }
 
@@ -114,6 +116,8 @@ std::unique_ptr<Plan::State> build_plan(PlanSettings its_settings) {
   };
   auto program = build(state->sources.method);
   auto classification = build(state->sources.classification);
+  std::vector<std::future<cl::Program>> more;
+  for (const ProgramSource& its : state->sources.more) more.push_back(build(its));
   const MaterialTables tables = fit_taps(settings, method, terms);
   state->materials = upload(context, tables.materials);
   state->levels = upload(context, tables.levels);
@@ -125,6 +129,7 @@ std::unique_ptr<Plan::State> build_plan(PlanSettings its_settings) {
   method.upload(context, tables);
   state->classification = classification.get();
   state->program = program.get();
+  for (auto& its : more) state->more_programs.push_back(its.get());
   if (settings.frames.views) state->hidden_light = std::make_shared<const HiddenLight>(settings);
   return state;
 }
@@ -148,52 +153,9 @@ Stats Plan::run(const Frame& frame, Reuse& reuse, const Progress& progress) cons
 }
 
 Stats Plan::run(const Frame& frame, Reuse::State* reuse, const Progress& progress) const {
-  const auto start = std::chrono::steady_clock::now();
-  const auto milliseconds_since_start = [&] {
-    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-  };
   const auto images = check_frame(frame, state_->settings.frames, state_->settings.options);
   check_views(frame, state_->settings);
-  const auto go_on = [&](double share) { return !progress || progress(share); };
-  return with_device_errors([&] {
-    const Device& device = state_->settings.device;
-    const BorrowedQueue borrowed(device);
-    const cl::CommandQueue& queue = *borrowed;
-    const BoundImages bound(device, queue, frame, images);
-    // Whatever ends the run, the device must be done with the caller's memory first.
-    const BorrowedMemory<RunMemory> memory(state_->memories, device, queue,
-                                           state_->run_sizes(frame.width, frame.height));
-    if (!frame.views.empty()) reuse = nullptr;
-    FrameRun frame_run(*state_, frame, bound, *memory, queue, {}, reuse);
-    Stats stats;
-    stats.prepare_ms = milliseconds_since_start();
-    frame_run.classify();
-    const int steps = frame_run.scatter_steps();
-    for (int step = 0; step < steps; ++step) {
-      frame_run.scatter(step);
-      if (steps == 1 && !progress) break;
-      queue.finish();
-      if (!go_on((step + 1.0) / (steps + 1))) return Stats{};
-    }
-    if (state_->settings.options.bad_pixels == BadPixels::error) {
-      if (const int bad = frame_run.counters()[COUNTER_BAD]; bad > 0) {
-        throw Error(ErrorCode::input_unsupported, "light", std::to_string(bad) + " pixels that are not finite",
-                    "finite light and albedo, or bad_pixels keep or zero");
-      }
-    }
-    if (!frame.views.empty()) stats.views = frame_run.add_hidden_light(frame);
-    frame_run.finish();
-    bound.read_back();
-    frame_run.add_to(stats);
-    if (reuse != nullptr) reuse->plan = state_->number;
-    stats.classify_ms = milliseconds(frame_run.events().classify);
-    stats.scatter_ms = milliseconds(frame_run.events().scatter);
-    stats.views_ms = milliseconds(frame_run.events().views);
-    stats.finish_ms = milliseconds(frame_run.events().finish);
-    stats.total_ms = milliseconds_since_start();
-    go_on(1);
-    return stats;
-  });
+  return with_device_errors([&] { return run_frame(*state_, frame, images, reuse, progress); });
 }
 
 Event Plan::enqueue(const Frame& frame, cl_command_queue queue, std::span<const cl_event> wait_for) const {
@@ -206,6 +168,7 @@ Event Plan::enqueue(const Frame& frame, cl_command_queue queue, std::span<const 
   if (state_->settings.options.bad_pixels == BadPixels::error) {
     throw Error(ErrorCode::usage, "bad_pixels", "error", "keep or zero, as enqueue cannot wait for the count");
   }
+  check_memory(*state_, {frame.width, frame.height});
   return with_device_errors([&] {
     const Device& device = state_->settings.device;
     const cl::CommandQueue its_queue(queue, true);
@@ -213,7 +176,7 @@ Event Plan::enqueue(const Frame& frame, cl_command_queue queue, std::span<const 
     auto lent = state_->memories.take_in_turn(device, state_->run_sizes(frame.width, frame.height));
     std::vector<cl_event> after(wait_for.begin(), wait_for.end());
     if (lent.used_until() != nullptr) after.push_back(lent.used_until());
-    FrameRun frame_run(*state_, frame, bound, *lent.memory, its_queue, after);
+    FrameRun frame_run(*state_, frame, Band::whole(frame.height), bound, *lent.memory, its_queue, after);
     frame_run.classify();
     for (int step = 0; step < frame_run.scatter_steps(); ++step) frame_run.scatter(step);
     frame_run.finish();

@@ -27,13 +27,16 @@ PlanPrograms plan_programs(const PlanSettings& settings, const ScatterMethod& me
   PlanPrograms programs{
       {{by_pixels ? "classify/classify_pixels.cl" : "classify/classify.cl", "classify/choose_passes.cl"}, by_block},
       {},
+      {},
       {{"classify/fingerprint.cl"}, by_block}};
   programs.method = method.kernels(terms);
   programs.method.files.emplace_back("frame/finish.cl");
   if (settings.has_curvature()) programs.method.files.emplace_back("frame/entering_light.cl");
-  programs.method.options = options + build_constant("V", method.vector_width()) +
-                            build_constant("LIT", settings.options.lighting == Lighting::lit ? 1 : 0) +
-                            programs.method.options;
+  const std::string of_method = options + build_constant("V", method.vector_width()) +
+                                build_constant("LIT", settings.options.lighting == Lighting::lit ? 1 : 0);
+  programs.method.options = of_method + programs.method.options;
+  programs.more = method.more_kernels(terms);
+  for (ProgramSource& its : programs.more) its.options = of_method + its.options;
   // Every program costs PoCL 25 ms from its cache on disk, and 200 ms without, for headers and the library of built-in
   // functions: all kernels are in one if they have vectors of the same width.
   if (method.vector_width() == classified_at_once) {

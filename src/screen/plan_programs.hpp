@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "opencl/program.hpp"
 #include "screen/methods/scatter_method.hpp"
@@ -10,8 +11,9 @@ namespace dermis {
 
 struct PlanPrograms {
   ProgramSource classification;
-  ProgramSource method;       ///< the same as that of classification if both have vectors of one width
-  ProgramSource fingerprint;  ///< built for a sequence whose frames are compared
+  ProgramSource method;             ///< the same as that of classification if both have vectors of one width
+  std::vector<ProgramSource> more;  ///< of the method
+  ProgramSource fingerprint;        ///< built for a sequence whose frames are compared
 };
 
 /// The build options that all kernels of a plan share.

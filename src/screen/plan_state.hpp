@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 #include <utility>
+#include <vector>
 
 #include "dermis/plan.hpp"
 #include "opencl/memory_pool.hpp"
@@ -25,6 +26,7 @@ struct Plan::State {
   PlanPrograms sources;
   cl::Program classification;
   cl::Program program;                              ///< of the method
+  std::vector<cl::Program> more_programs;           ///< of the method
   cl::Buffer materials;                             ///< MaterialParams
   cl::Buffer levels;                                ///< TapLevelParams
   cl::Buffer curvatures;                            ///< CurvatureParams, if settings.has_curvature()
@@ -36,13 +38,19 @@ struct Plan::State {
 
   RunSizes run_sizes(int width, int height) const {
     const FrameSize frame{width, height};
-    return {frame, method->buffer_bytes(frame), settings.has_curvature()};
+    return {frame, method->buffers(frame), settings.has_curvature()};
+  }
+
+  /// Whether light waits for its output in every frame, whatever the outputs lie over.
+  bool always_defers() const {
+    return settings.options.bad_pixels == BadPixels::error || !method->by_tiles() || settings.frames.views ||
+           settings.options.sums_weights || settings.has_curvature();
   }
 
   std::size_t scratch_bytes(int width, int height) const {
-    const bool defers =
-        settings.options.bad_pixels == BadPixels::error || !method->by_tiles() || settings.has_curvature();
-    return run_sizes(width, height).bytes(defers);
+    std::size_t sum = 0;
+    for (const BufferSize& its : run_sizes(width, height).buffers(always_defers())) sum += its.bytes;
+    return sum;
   }
 
  private:

@@ -22,7 +22,7 @@ bool Reuse::State::continues(const Plan::State& its_plan, const Frame& frame) {
   camera = frame.camera;
   mm_per_unit = frame.mm_per_unit;
   const Device& device = its_plan.settings.device;
-  deferred = device_buffer(device, "deferred light", sizes.deferred_bytes());
+  deferred = device_buffer(device, sizes.deferred().name, sizes.deferred().bytes);
   fingerprints = device_buffer(device, "fingerprints", size.blocks() * sizeof(cl_ulong));
   changed = device_buffer(device, "changed blocks", size.blocks());
   return false;

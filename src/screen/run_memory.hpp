@@ -13,13 +13,13 @@ namespace dermis {
 
 struct RunSizes {
   FrameSize frame;
-  std::vector<std::size_t> method_bytes;  ///< of the buffers of the method
-  bool has_curvature = false;             ///< PlanSettings::has_curvature()
+  std::vector<BufferSize> method;  ///< its buffers
+  bool has_curvature = false;      ///< PlanSettings::has_curvature()
 
   std::size_t plane_bytes() const { return frame.plane() * sizeof(float); }
-  std::size_t deferred_bytes() const { return 3 * plane_bytes(); }
-  /// The sum over all buffers, with or without that of deferred light.
-  std::size_t bytes(bool defers) const;
+  /// All buffers, with or without that of deferred light, which comes last.
+  std::vector<BufferSize> buffers(bool defers) const;
+  BufferSize deferred() const { return {"deferred light", 3 * plane_bytes()}; }
 
   bool operator==(const RunSizes&) const = default;
 };
@@ -34,7 +34,7 @@ struct RunMemory {
   cl::Buffer deferred;             ///< light that waits for its output: null until it is needed
   cl::Buffer entering;             ///< light with the gain of curvature; null if there is none
   cl::Buffer curvature;            ///< 1/mm, of each pixel; null if it is not asked for
-  std::vector<cl::Buffer> method;  ///< as ScatterMethod::buffer_bytes lists them
+  std::vector<cl::Buffer> method;  ///< as ScatterMethod::buffers lists them
 
   /// Throws Error(device) that names a buffer for which the device has no room.
   RunMemory(const Device& device, RunSizes wanted);

@@ -99,6 +99,8 @@ constexpr std::array rows = {
     Row{{"sums_weights", "on or off: sums are not divided by those of weights"}, set_one<&Options::sums_weights>},
     Row{{"bad_pixels", "keep, zero or error"}, set_one<&Options::bad_pixels>},
     Row{{"skip_uniform_light", "on or off"}, set_one<&Options::skip_uniform_light>},
+    Row{{"device_memory_mb", "of device memory that a run may take, else it goes band by band; 0: all"},
+        set_one<&Options::device_memory_mb>},
     Row{{"cache_folder", "in which taps are kept for later processes"}, set_one<&Options::cache_folder>},
 };
 

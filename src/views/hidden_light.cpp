@@ -224,7 +224,7 @@ cl::Buffer HiddenLight::sum_weights(FrameRun& run, const Frame& frame, RunMemory
   for (const ImageName output : {scattered, result, beauty}) images[static_cast<std::size_t>(output)] = {};
   const BoundImages bound(run.device(), run.queue(), frame, images);
   const cl_event before = run.last_event()();
-  FrameRun weights(*state_->weights, frame, bound, memory, run.queue(), {&before, 1});
+  FrameRun weights(*state_->weights, frame, Band::whole(frame.height), bound, memory, run.queue(), {&before, 1});
   weights.classify();
   for (int step = 0; step < weights.scatter_steps(); ++step) weights.scatter(step);
   run.include(weights);

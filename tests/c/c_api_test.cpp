@@ -223,6 +223,7 @@ TEST_CASE("every setting has a name and a help, and takes its default as it take
                                                                    {"sums_weights", "on"},
                                                                    {"bad_pixels", "zero"},
                                                                    {"skip_uniform_light", "off"},
+                                                                   {"device_memory_mb", "100"},
                                                                    {"cache_folder", "/tmp/a folder"}};
   dermis::Options options;
   std::size_t found = 0;
@@ -254,6 +255,7 @@ TEST_CASE("every setting has a name and a help, and takes its default as it take
       .sums_weights = true,
       .bad_pixels = dermis::BadPixels::zero,
       .skip_uniform_light = false,
+      .device_memory_mb = 100,
       .cache_folder = "/tmp/a folder"};
   CHECK(options == expected);
 }

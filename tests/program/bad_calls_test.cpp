@@ -104,6 +104,7 @@ TEST_CASE("values outside their ranges are usage errors that name argument, valu
                                    {"--focal-px", "inf", "> 0"},
                                    {"--px-per-unit", "-3", "> 0"},
                                    {"--threads", "0", "> 0"},
+                                   {"--device-memory", "-1", "0..1000000"},
                                    {"--compression", "gzip", "piz"},
                                    {"--quality", "best", "draft or preview or final or reference"},
                                    {"--rank", "any", "or auto"},

@@ -52,6 +52,7 @@ TEST_CASE("plans that cannot be", "[bad]") {
   check_error(plan({.albedo_mix = -0.5}), ErrorCode::usage, "albedo_mix: got -0.500000, want 0..1");
   check_error(plan({.tile_width = 20}), ErrorCode::usage, "tile_width: got 20, want a multiple of 16 up to 65536");
   check_error(plan({.tile_height = -1}), ErrorCode::usage, "tile_height: got -1, want 0..65536");
+  check_error(plan({.device_memory_mb = -1}), ErrorCode::usage, "device_memory_mb: got -1, want 0..1000000");
   check_error(plan({}, {}, {}), ErrorCode::usage,
               "materials: got 0, want exactly 1, as the frames have no material ids");
   check_error(plan({}, {.material = true}, {{1, skin[0].profile}, {1, skin[0].profile}}), ErrorCode::usage,

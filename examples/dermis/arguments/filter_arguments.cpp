@@ -1,5 +1,7 @@
 #include "arguments/filter_arguments.hpp"
 
+#include <cstdint>
+
 #include "arguments/bad_pixels_argument.hpp"
 #include "arguments/cache_argument.hpp"
 #include "arguments/config_file.hpp"
@@ -124,6 +126,12 @@ void add_scatter_arguments(CLI::App& app, FilterArguments& arguments) {
   }
   const HelpGroup group(app, "Device");
   add_device_arguments(app, arguments.device);
+  app.add_option("--device-memory", arguments.options.device_memory_mb,
+                 "MB of the device's memory to take at most; a picture that needs more is filtered in bands of rows, "
+                 "with the same result; 0: all of it")
+      ->check(whole_number([](std::int64_t n) { return n >= 0 && n <= 1000000; }, "a whole number, 0..1000000"))
+      ->type_name("MB")
+      ->capture_default_str();
   add_cache_argument(app, arguments.cache_dir);
 }
 

@@ -149,6 +149,7 @@ json json_of(const StatsReport& report) {
                  {"input", report.input},
                  {"notes", report.notes},
                  {"warnings", report.warnings}};
+  object["bands"] = stats.bands;
   object["tiles"] = {{"total", stats.tiles.kinds.size()}};
   for (const auto& [kind, name] : word_table<TileKind>) object["tiles"][std::string(name)] = stats.count(kind);
   object["pixels"] = {{"total", stats.pixels},
@@ -189,6 +190,7 @@ std::string text_of(const StatsReport& report) {
   text += '\n';
   for (const MaterialReport& material : report.materials) text += text_of(material);
   const auto tiles = static_cast<std::int64_t>(stats.tiles.kinds.size());
+  if (stats.bands > 1) text += fmt::format("bands       {}\n", stats.bands);
   text += fmt::format("tiles       {}\n", tiles);
   for (const auto& [kind, name] : word_table<TileKind>) text += counted(in_words(name), stats.count(kind), tiles);
   text += fmt::format("pixels      {}\n", stats.pixels);

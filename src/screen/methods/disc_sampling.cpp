@@ -48,6 +48,7 @@ class DiscSampling final : public ScatterMethod {
       append_disc(settings_.materials[i].profile, static_cast<int>(widest - std::begin(widths)), settings_.options.disc,
                   discs, samples);
     }
+    for (const params::DiscParams& disc : discs) reach_mm_ = std::max<double>(reach_mm_, disc.reach_mm);
     std::vector<std::array<float, 2>> turns;
     for (int i = 0; i < ROTATIONS; ++i) {
       const double angle = 2 * std::numbers::pi * i / ROTATIONS;
@@ -58,10 +59,21 @@ class DiscSampling final : public ScatterMethod {
     turns_ = dermis::upload(context, turns);
   }
 
-  std::vector<std::size_t> buffer_bytes(const FrameSize& frame) const override {
-    return {window_bytes(frame_window(frame, settings_.has_pixel_width()).planes),
-            static_cast<std::size_t>(levels(frame).texels) * sizeof(params::TexelParams), 2 * frame.blocks()};
+  std::vector<BufferSize> buffers(const FrameSize& frame) const override {
+    return {{"window", window_bytes(frame_window(frame, settings_.has_pixel_width()).planes)},
+            {"texels", static_cast<std::size_t>(levels(frame).texels) * sizeof(params::TexelParams)},
+            {"lit blocks", 2 * frame.blocks()}};
   }
+
+  /// As dark_blocks has it: rays n pixels apart are n times the size of a pixel apart on any surface, over their
+  /// length. The farthest texels are in it; they are square.
+  int reach_rows(const Finest& finest, const Camera& camera, const FrameSize& frame) const override {
+    const double most_per_mm = settings_.options.disc.prefiltered ? std::max(finest.x, finest.y) : finest.y;
+    return rows_within(reach_mm_ * most_per_mm * longest_ray(camera, frame) + 4, frame);
+  }
+
+  /// Texels of all levels begin there.
+  int band_alignment() const override { return settings_.options.disc.prefiltered ? largest_texel_px : BLOCK; }
 
   void prepare(FrameRun& run) const override {
     const auto& buffers = run.memory().method;
@@ -97,6 +109,8 @@ class DiscSampling final : public ScatterMethod {
   }
 
  private:
+  static constexpr int largest_texel_px = 1 << (MOST_TEXEL_LEVELS - 1);
+
   params::TexelLevels levels(const FrameSize& frame) const {
     const int most_levels = settings_.options.disc.prefiltered ? MOST_TEXEL_LEVELS : 1;
     params::TexelLevels levels{};
@@ -109,9 +123,10 @@ class DiscSampling final : public ScatterMethod {
   }
 
   ProfileTables profiles_;
-  cl::Buffer discs_;    ///< DiscParams of each material
-  cl::Buffer samples_;  ///< SampleParams
-  cl::Buffer turns_;    ///< cosine and sine of ROTATIONS angles
+  double reach_mm_ = 0;  ///< no sample of any material is farther away
+  cl::Buffer discs_;     ///< DiscParams of each material
+  cl::Buffer samples_;   ///< SampleParams
+  cl::Buffer turns_;     ///< cosine and sine of ROTATIONS angles
 };
 
 }  // namespace

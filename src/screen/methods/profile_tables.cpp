@@ -34,6 +34,7 @@ void ProfileTables::upload(const cl::Context& context, const std::vector<Materia
     };
     params::ProfileParams row{};
     row.reach_mm = static_cast<float>(reach_mm);
+    farthest_mm = std::max(farthest_mm, reach_mm);
     row.radial = append([&](int c, double r) { return profile.radial(c, r); });
     row.cumulated = append([&](int c, double r) { return profile.cdf(c, r); });
     row.is_projected = profile.is_projected() ? 1 : 0;

@@ -10,8 +10,9 @@
 namespace dermis {
 
 struct ProfileTables {
-  cl::Buffer profiles;  ///< ProfileParams of each material
-  cl::Buffer nodes;     ///< of all tables: R(r), and the light within the disc of radius r
+  cl::Buffer profiles;     ///< ProfileParams of each material
+  cl::Buffer nodes;        ///< of all tables: R(r), and the light within the disc of radius r
+  double farthest_mm = 0;  ///< no light of any material comes from farther away
 
   void upload(const cl::Context& context, const std::vector<Material>& materials);
 };

@@ -1,10 +1,14 @@
 #include "screen/methods/separable_method.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
 #include <numbers>
+#include <utility>
 #include <vector>
+
+#include "dermis/tap_tables.hpp"
 
 namespace dermis {
 
@@ -34,6 +38,40 @@ class PackedTables {
 void SeparableMethod::measure(const MaterialTables& tables) {
   terms_ = tables.terms_per_material;
   farthest_px_ = tables.farthest_px;
+  for (const params::MaterialParams& its : tables.materials) {
+    Reach reach{its.radius_mm, {}};
+    for (int i = 0; i < its.levels; ++i) {
+      const int last_px = tables.levels[its.first_level + i].last_offset_px;
+      reach.last_px.push_back(std::max(last_px, reach.last_px.empty() ? 0 : reach.last_px.back()));
+    }
+    reaches_.push_back(std::move(reach));
+  }
+}
+
+int SeparableMethod::farthest_tap_px(double px_per_mm) const {
+  int farthest = 0;
+  for (const Reach& its : reaches_) {
+    const int level = Taps::level_index(static_cast<float>(px_per_mm * its.radius_mm));
+    if (level < 0 || its.last_px.empty()) continue;
+    // A flat block takes the nearest level instead of the one below.
+    const auto index = std::min(static_cast<std::size_t>(level) + 1, its.last_px.size() - 1);
+    farthest = std::max(farthest, its.last_px[index]);
+  }
+  return farthest;
+}
+
+int SeparableMethod::reach_rows(const Finest& finest, const Camera& camera, const FrameSize& frame) const {
+  // A slanted surface has more pixels per mm than the one that faces the camera: by up to the length of the ray.
+  const double most_per_mm = 1.01 * longest_ray(camera, frame);
+  const int along_y = farthest_tap_px(most_per_mm * finest.y);
+  if (settings_.options.jitter == 0) {
+    // The class of a block is that of the surface within 9/8 of its taps, and slopes are taken from the next row.
+    return rows_within(std::max(1.0 * along_y, 1.125 * farthest_tap_px(finest.y)) + 1, frame);
+  }
+  const double turn = std::max({1.0, camera.scale_y / camera.scale_x, camera.scale_x / camera.scale_y});
+  const int along_x = farthest_tap_px(most_per_mm * finest.x);
+  return rows_within(turn * (along_x + along_y) + 4,
+                     frame);  // a tap of the vertical pass, turned, and one of that pixel
 }
 
 void SeparableMethod::upload(const cl::Context& context, const MaterialTables& tables) {

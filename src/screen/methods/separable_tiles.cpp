@@ -29,10 +29,11 @@ class SeparableTiles final : public SeparableMethod {
 
   ProgramSource kernels(int terms) const override { return {{"separable/tile.cl"}, build_constant("TERMS", terms)}; }
 
-  std::vector<std::size_t> buffer_bytes(const FrameSize& frame) const override {
+  std::vector<BufferSize> buffers(const FrameSize& frame) const override {
     const params::TileParams tile = tiles(frame);
     const std::size_t most_tiles = static_cast<std::size_t>(tile.columns) * parts_of(frame.height, tile.least_height);
-    return {tile.workers * static_cast<std::size_t>(worker_memory(frame).bytes), most_tiles};
+    return {{"windows of tiles", tile.workers * static_cast<std::size_t>(worker_memory(frame).bytes)},
+            {"kinds of tiles", most_tiles}};
   }
 
   void prepare(FrameRun& run) const override { run.compare_with_frame_before(); }
@@ -61,7 +62,7 @@ class SeparableTiles final : public SeparableMethod {
     const params::TileParams tile = tiles(run.size());
     const int tile_height = run.counters()[COUNTER_TILE_HEIGHT];
     TileMap& map = stats.tiles;
-    map = {tile.width, tile_height, tile.columns, parts_of(run.size().height, tile_height), {}};
+    map = {tile.width, tile_height, tile.columns, parts_of(run.own_rows().count, tile_height), {}};
     map.kinds.resize(static_cast<std::size_t>(map.columns) * map.rows);
     run.queue().enqueueReadBuffer(run.memory().method[kinds], CL_TRUE, 0, map.kinds.size(), map.kinds.data());
   }

@@ -1,5 +1,7 @@
 // The surface integral over all visible pixels of a material. The kernels are in kernels/integral/exact.cl.
 #include <algorithm>
+#include <cmath>
+#include <iterator>
 
 #include "opencl/program.hpp"
 #include "screen/frame_run.hpp"
@@ -28,12 +30,37 @@ class SurfaceIntegral final : public ScatterMethod {
 
   int rows_per_step(const FrameSize& frame) const override { return rows_at_once(frame); }
 
+  void measure(const MaterialTables& tables) override {
+    for (const params::MaterialParams& its : tables.materials) {
+      // An albedo may widen a narrow channel by more than the widest one, by whose width blocks are classified.
+      const auto& widths = its.relative_width;
+      narrowest_ = std::min<double>(
+          narrowest_, its.width.follows_albedo != 0 ? *std::min_element(std::begin(widths), std::end(widths)) : 1);
+    }
+  }
+
   void upload(const cl::Context& context, const MaterialTables&) override {
     profiles_.upload(context, settings_.materials);
   }
 
-  std::vector<std::size_t> buffer_bytes(const FrameSize& frame) const override {
-    return {window_bytes(frame_window(frame, settings_.has_pixel_width()).planes), 3 * frame.plane() * sizeof(float)};
+  std::vector<BufferSize> buffers(const FrameSize& frame) const override {
+    return {{"window", window_bytes(frame_window(frame, settings_.has_pixel_width()).planes)},
+            {"geometry", 3 * frame.plane() * sizeof(float)}};
+  }
+
+  /// As `reach` of exact.cl has it.
+  int reach_rows(const Finest& finest, const Camera& camera, const FrameSize& frame) const override {
+    if (finest.y == 0) return 0;
+    const double reach_mm = profiles_.farthest_mm / narrowest_;
+    double rows = reach_mm * finest.y;
+    if (camera.projection == Camera::Projection::perspective) {
+      const double nearest_mm = camera.scale_y / finest.y - reach_mm;
+      if (nearest_mm <= 0) return frame.height;
+      const double most_slope =
+          std::max(std::abs(camera.center_y), std::abs(frame.height - camera.center_y)) / camera.scale_y;
+      rows = reach_mm * (1 + most_slope) * camera.scale_y / nearest_mm;
+    }
+    return rows_within(1.001 * rows + 2 + 1, frame);  // and one for the slopes of the farthest
   }
 
   void prepare(FrameRun& run) const override {
@@ -55,6 +82,7 @@ class SurfaceIntegral final : public ScatterMethod {
 
  private:
   ProfileTables profiles_;
+  double narrowest_ = 1;  ///< channel of a material, over its widest one, if an albedo widens each by itself
 };
 
 }  // namespace
