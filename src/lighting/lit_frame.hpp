@@ -35,7 +35,7 @@ Event enqueue_lit(const Device& device, MemoryPool<LightMemory>& memories, const
   commands.wait_for(lent.used_until);
   const BoundLights bound_lights(device, commands, program, lights, *lent.memory);
   launch(commands, bound, *lent.memory);
-  lent.used_until = commands.last();
+  lent.used_until = cl::Event(commands.last());
   memories.give_back(std::move(lent));
   return commands.hand_over();
 }

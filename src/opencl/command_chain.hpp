@@ -43,10 +43,10 @@ class CommandChain {
     auto copy = std::make_unique<std::vector<Row>>(rows);
     cl::Event event;
     queue_.enqueueWriteBuffer(buffer, CL_FALSE, 0, rows.size() * sizeof(Row), copy->data(), before(), &event);
-    add(event);
-    event.setCallback(
+    event.setCallback(  // where that fails, the copy stays, as the device may still read it
         CL_COMPLETE, [](cl_event, cl_int, void* its_copy) { delete static_cast<std::vector<Row>*>(its_copy); },
         copy.release());
+    add(event);
   }
 
   /// The event of the last command.
@@ -55,15 +55,15 @@ class CommandChain {
   /// Hands the commands to the device, and their last event to the caller.
   Event hand_over() const {
     queue_.flush();
-    clRetainEvent(last()());
-    return Event(last()());
+    cl::Event copy = last();
+    return Event(std::exchange(copy(), nullptr));
   }
 
  private:
   const std::vector<cl::Event>* before() const { return last_.empty() ? nullptr : &last_; }
 
   cl::Event add(const cl::Event& event) {
-    last_ = {event};
+    last_ = std::vector{event};
     return event;
   }
 

@@ -94,8 +94,7 @@ cl::Device part_of(const cl::Device& whole, int threads) {
                                                        CL_DEVICE_PARTITION_BY_COUNTS_LIST_END, 0};
     std::vector<cl::Device> made;
     cl::Device(whole).createSubDevices(properties, &made);
-    part = made.front()();
-    clRetainDevice(part);  // for good
+    part = std::exchange(made.front()(), nullptr);  // for good
   }
   return cl::Device(part, true);
 }

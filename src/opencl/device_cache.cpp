@@ -20,7 +20,7 @@ BorrowedQueue::BorrowedQueue(const Device& device) : cache_(cache_of(device)) {
   {
     const std::scoped_lock lock(cache_.queues_mutex);
     if (!cache_.queues.empty()) {
-      queue_ = cache_.queues.back();
+      queue_ = std::move(cache_.queues.back());
       cache_.queues.pop_back();
       return;
     }
@@ -30,9 +30,9 @@ BorrowedQueue::BorrowedQueue(const Device& device) : cache_(cache_of(device)) {
 }
 
 BorrowedQueue::~BorrowedQueue() {
-  clFinish(queue_());  // whatever has ended the run
+  if (!wait_until_idle(queue_)) return;  // whatever has ended the run
   const std::scoped_lock lock(cache_.queues_mutex);
-  cache_.queues.push_back(queue_);
+  cache_.queues.push_back(std::move(queue_));
 }
 
 BorrowedBuffer::BorrowedBuffer(const Device& device, std::string_view name, std::size_t bytes)

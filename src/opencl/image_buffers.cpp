@@ -146,7 +146,7 @@ ImageBuffers::ImageBuffers(const Device& device, const cl::CommandQueue& queue, 
       const HostRange own = host_range_of(image, width, height);
       const auto range = std::find_if(host_ranges_.begin(), host_ranges_.end(),
                                       [&](const HostRange& r) { return own.begin >= r.begin && own.end <= r.end; });
-      buffers_[i] = host_buffers_[range - host_ranges_.begin()];
+      buffers_[i] = cl::Buffer(host_buffers_[range - host_ranges_.begin()]);
       offset += static_cast<const std::byte*>(image.host) - range->begin;
     }
     layouts_[i] = {offset,
@@ -159,7 +159,7 @@ ImageBuffers::ImageBuffers(const Device& device, const cl::CommandQueue& queue, 
 }
 
 ImageBuffers::~ImageBuffers() {
-  if (!copies_.empty()) clFinish(queue_());  // before another run takes them
+  if (!copies_.empty()) wait_until_idle(queue_);  // before another run takes them
 }
 
 void ImageBuffers::bind_host_ranges(const Device& device) {
@@ -189,8 +189,11 @@ bool ImageBuffers::overlap(std::size_t a, std::size_t b) const {
   if (buffers_[a]() != buffers_[b]()) {
     // Different buffers of a caller may be parts of the same one.
     const auto whole = [&](std::size_t i) {
-      const auto parent = buffers_[i].getInfo<CL_MEM_ASSOCIATED_MEMOBJECT>();
-      return parent() != nullptr ? parent() : buffers_[i]();
+      cl_mem parent = nullptr;
+      const cl_int error =
+          clGetMemObjectInfo(buffers_[i](), CL_MEM_ASSOCIATED_MEMOBJECT, sizeof(parent), &parent, nullptr);
+      if (error != CL_SUCCESS) throw cl::Error(error, "clGetMemObjectInfo");
+      return parent != nullptr ? parent : buffers_[i]();
     };
     return whole(a) == whole(b);
   }

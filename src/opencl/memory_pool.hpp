@@ -72,8 +72,11 @@ class BorrowedMemory {
                  const typename MemoryPool<Memory>::Sizes& sizes)
       : pool_(pool), queue_(queue), memory_(pool.take(device, sizes)) {}
   ~BorrowedMemory() {
-    clFinish(queue_());
-    pool_.give_back(std::move(memory_));
+    if (wait_until_idle(queue_)) {
+      pool_.give_back(std::move(memory_));
+    } else {
+      static_cast<void>(memory_.release());  // the device may still write to it
+    }
   }
   BorrowedMemory(const BorrowedMemory&) = delete;
   BorrowedMemory& operator=(const BorrowedMemory&) = delete;

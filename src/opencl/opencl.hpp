@@ -1,4 +1,7 @@
 // The OpenCL C++ bindings, version 1.2, with errors as ours, arguments of kernels, uploads and times.
+//
+// Where a retain fails, the bindings' copy constructor throws and leaves nothing behind, but their copy assignment
+// throws with a handle that it does not own and will release. So handles are copied by construction, then moved.
 #pragma once
 
 #define CL_HPP_TARGET_OPENCL_VERSION 120
@@ -6,8 +9,10 @@
 #define CL_HPP_ENABLE_EXCEPTIONS
 #define CL_TARGET_OPENCL_VERSION 120
 #include <CL/opencl.hpp>
+#include <chrono>
 #include <span>
 #include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -23,6 +28,17 @@ auto with_device_errors(Work&& work) {
   } catch (const cl::Error& error) {
     throw Error(ErrorCode::device, error.what(), "OpenCL error " + std::to_string(error.err()), "success");
   }
+}
+
+/// Waits until the device is done with the commands of a queue, so that their memory may go. False if the driver does
+/// not say so within seconds, as when it has lost the device.
+inline bool wait_until_idle(const cl::CommandQueue& queue) noexcept {
+  constexpr std::chrono::milliseconds longest{1024};
+  for (std::chrono::milliseconds pause{1}; clFinish(queue()) != CL_SUCCESS; pause *= 2) {
+    if (pause > longest) return false;
+    std::this_thread::sleep_for(pause);
+  }
+  return true;
 }
 
 template <class Argument>

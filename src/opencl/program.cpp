@@ -39,6 +39,17 @@ std::string telling_line(const std::string& log) {
   return first;
 }
 
+/// What a build has failed of: its log tells it, if the driver has one.
+std::string problem_of(const cl::Program& program, const cl::Device& device, cl_int error) {
+  try {
+    const std::string line = telling_line(program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device));
+    if (!line.empty()) return line;
+  } catch (const cl::Error&) {
+    // The error of the build says more than that of asking for its log.
+  }
+  return "OpenCL error " + std::to_string(error);
+}
+
 cl::Program build(const cl::Context& context, const cl::Device& device, const std::string& source,
                   const std::string& options) {
   // One at a time: not every device's compiler stands several threads, and PoCL's makes them wait for each other.
@@ -47,9 +58,8 @@ cl::Program build(const cl::Context& context, const cl::Device& device, const st
   cl::Program program(context, source);
   try {
     program.build({device}, (options + " -w").c_str());  // warnings are for tests
-  } catch (const cl::Error&) {
-    throw Error(ErrorCode::device, "kernels", telling_line(program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device)),
-                "a successful build");
+  } catch (const cl::Error& error) {
+    throw Error(ErrorCode::device, "kernels", problem_of(program, device, error.err()), "a successful build");
   }
   return program;
 }

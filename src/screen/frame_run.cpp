@@ -80,11 +80,13 @@ FrameRun::FrameRun(const Plan::State& plan, const Frame& frame, const Band& band
       flags_(run_flags(plan, images, reuse_ != nullptr, reuse_ != nullptr && reuse_->continues(plan, frame))) {
   for (const cl_event event : wait_for) last_.emplace_back(event, true);
   if (flags_.defers != 0 && reuse_ == nullptr) memory.need_deferred(plan.settings.device);
-  deferred_ = reuse_ != nullptr ? reuse_->deferred : flags_.defers != 0 ? memory.deferred : memory.material_ids;
+  deferred_ = cl::Buffer(reuse_ != nullptr    ? reuse_->deferred
+                         : flags_.defers != 0 ? memory.deferred
+                                              : memory.material_ids);
 }
 
 void FrameRun::launch(const cl::Kernel& kernel, const Grid& grid) {
-  last_ = {enqueue(queue_, kernel, grid, last_)};
+  last_ = std::vector{enqueue(queue_, kernel, grid, last_)};
   phase_->push_back(last_.front());
 }
 
@@ -114,7 +116,7 @@ void FrameRun::find_blocks() {
   cl::Event cleared;
   queue_.enqueueFillBuffer(memory_.counters, cl_int{0}, 0, RUN_COUNTERS * sizeof(cl_int),
                            last_.empty() ? nullptr : &last_, &cleared);
-  last_ = {cleared};
+  last_ = std::vector{cleared};
   const int blocks_per_item = run_length(frame_.blocks_x);
   cl::Kernel classify(plan_.classification, "classify_blocks");
   if (item_is_pixel_) {
@@ -163,7 +165,7 @@ std::vector<cl::Buffer> FrameRun::inputs(std::initializer_list<ImageName> names)
   if (!memory_.sizes.has_curvature) return buffers;
   std::size_t i = 0;
   for (const ImageName name : names) {
-    if (name == ImageName::light) buffers[i] = memory_.entering;
+    if (name == ImageName::light) buffers[i] = cl::Buffer(memory_.entering);
     ++i;
   }
   return buffers;

@@ -4,6 +4,7 @@
 #include <array>
 #include <future>
 #include <string>
+#include <utility>
 
 #include "dermis/tap_tables.hpp"
 #include "opencl/command_chain.hpp"
@@ -182,10 +183,9 @@ Event Plan::enqueue(const Frame& frame, cl_command_queue queue, std::span<const 
     frame_run.finish();
     its_queue.flush();
     lent.used_until = frame_run.last_event();
-    cl_event event = lent.used_until();
-    clRetainEvent(event);
+    cl::Event last = lent.used_until;
     state_->memories.give_back(std::move(lent));
-    return dermis::Event(event);
+    return dermis::Event(std::exchange(last(), nullptr));
   });
 }
 

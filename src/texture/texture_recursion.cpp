@@ -97,10 +97,10 @@ class TextureRecursion final : public TextureScatter {
 void TextureRecursion::launch(TextureRun& run, RecursionMemory& memory) const {
   if (memory.mm_per_texel != run.mm_per_texel()) {
     const std::array<params::PoleParams, 2> tables = make_pole_tables(recursion_, run.mm_per_texel());
-    memory.mm_per_texel = run.mm_per_texel();
     for (std::size_t pass = 0; pass < 2; ++pass) {
       memory.poles[pass] = upload(run.context(), std::span(tables).subspan(pass, 1));
     }
+    memory.mm_per_texel = run.mm_per_texel();
   }
   run.prepare(memory.planes);
   for (const bool along_v : {false, true}) {

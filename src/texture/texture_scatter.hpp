@@ -49,7 +49,7 @@ class TextureScatter {
     auto lent = memories.take_in_turn(run.device(), run.sizes());
     run.commands().wait_for(lent.used_until);
     launch(run, *lent.memory);
-    lent.used_until = run.commands().last();
+    lent.used_until = cl::Event(run.commands().last());
     memories.give_back(std::move(lent));
   }
 

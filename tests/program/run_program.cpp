@@ -13,6 +13,7 @@
 
 #include "commands/run.hpp"
 #include "support/catch.hpp"
+#include "support/failing_calls.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace {
@@ -35,6 +36,10 @@ void redirect(int file, const char* path) {
   if (*words[1] != '\0') putenv(words[1]);
   words.erase(words.begin(), words.begin() + 4);
   words.push_back(nullptr);
+  if (const char* const number = std::getenv(failing_call)) {
+    install_failing_calls();
+    fail_call(std::atoi(number));
+  }
   const int code = dermis::program::run(static_cast<int>(words.size()) - 1, words.data());
   // Without exit(): a library that comes with OpenImageIO (log4cplus) starts threads when it is loaded, which a child
   // of fork() has not, and waits for them when it is unloaded.

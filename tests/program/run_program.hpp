@@ -18,6 +18,9 @@ inline bool has(const std::string& text, const std::string& part) { return text.
 /// pictures that are made small to be quick.
 bool is_input(const std::string& line);
 
+/// The variable with the number of the OpenCL call that fails in a run.
+inline constexpr const char* failing_call = "DERMIS_TEST_FAILING_CALL";
+
 struct Surroundings {
   std::string environment = {};  ///< one more variable, "NAME=value"
   std::string folder = {};       ///< where the program runs; empty: where the tests do
