@@ -1,6 +1,7 @@
 #include "exr/temporary_file.hpp"
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -10,7 +11,9 @@
 #include <climits>
 #include <cstdint>
 #include <cstring>
+#include <mutex>
 #include <random>
+#include <set>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -37,11 +40,43 @@ std::string reason(int error) { return std::generic_category().message(error); }
 
 fs::path folder_of(const fs::path& file) { return file.has_parent_path() ? file.parent_path() : fs::path("."); }
 
+constexpr std::string_view prefix = ".dermis-";
+
 /// Short, so that it fits where the target's own name does; hidden, so that no "*.exr" takes it for a result.
 fs::path random_name(const fs::path& target) {
   std::random_device random;
-  const std::string name = ".dermis-" + std::to_string(random()) + std::to_string(random());
+  const std::string name = std::string(prefix) + std::to_string(random()) + std::to_string(random());
   return target.parent_path() / (name + target.extension().string().substr(0, 5));
+}
+
+/// Whoever writes a temporary file holds its lock, which ends with the process, whatever ends that. False if the file
+/// is somebody else's, or is gone, as remove_abandoned came first. Where there are no locks, nothing is ever abandoned.
+bool lock_own(int descriptor) {
+  if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) return false;
+  struct stat status = {};
+  return ::fstat(descriptor, &status) != 0 || status.st_nlink > 0;
+}
+
+/// Removes the temporary files of this user that no process writes any more, as those of one that was killed; in each
+/// folder once.
+void remove_abandoned(const fs::path& folder) {
+  static std::mutex mutex;
+  static std::set<fs::path> seen;
+  const std::scoped_lock lock(mutex);
+  std::error_code error;
+  if (!seen.insert(fs::absolute(folder, error)).second) return;
+  for (fs::directory_iterator entry(folder, error); !error && entry != fs::directory_iterator();
+       entry.increment(error)) {
+    const std::string name = entry->path().filename().string();
+    if (!name.starts_with(prefix) || name.find_first_not_of("0123456789", prefix.size()) != name.find('.', 1)) continue;
+    const int descriptor = ::open(entry->path().c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+    if (descriptor < 0) continue;
+    struct stat status = {};
+    if (::fstat(descriptor, &status) == 0 && S_ISREG(status.st_mode) && status.st_uid == ::geteuid() &&
+        ::flock(descriptor, LOCK_EX | LOCK_NB) == 0)
+      ::unlink(entry->path().c_str());
+    ::close(descriptor);
+  }
 }
 
 /// The names of temporary files, where a handler of signals can read them: a name is complete as long as `used` is 2.
@@ -127,13 +162,15 @@ TemporaryFile::TemporaryFile(fs::path target, std::string_view argument)
   check_writable(argument, named_);
   const struct stat old = status_of(target_);
   const mode_t mode = old.st_mode == 0 ? 0666 : old.st_mode & 0777;  // nobody may open it who may not open the old one
+  remove_abandoned(folder_of(target_));
   for (int i = 0; i < attempts && descriptor_ < 0; ++i) {
     path_ = random_name(target_);
     slot_ = remember(path_);
     descriptor_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode);
-    if (descriptor_ >= 0) break;
+    if (descriptor_ >= 0 && lock_own(descriptor_)) break;
     forget(std::exchange(slot_, -1));
-    if (errno != EEXIST) break;
+    if (descriptor_ < 0 && errno != EEXIST) break;
+    if (descriptor_ >= 0) ::close(std::exchange(descriptor_, -1));
   }
   if (descriptor_ < 0) refuse(name_, named_, reason(errno));
   take_after(descriptor_, old);
@@ -188,8 +225,13 @@ void TemporaryFile::commit() {
   failed_if(std::fflush(stream_) != 0 || std::ferror(stream_) != 0);
   failed_if(::fsync(descriptor_) != 0);
   failed_if(std::fclose(std::exchange(stream_, nullptr)) != 0);
-  failed_if(::close(std::exchange(descriptor_, -1)) != 0);
-  failed_if(std::rename(path_.c_str(), target_.c_str()) != 0);
+  const int lock = ::fcntl(descriptor_, F_DUPFD_CLOEXEC, 0);  // until the file has its name
+  const bool is_placed =
+      ::close(std::exchange(descriptor_, -1)) == 0 && std::rename(path_.c_str(), target_.c_str()) == 0;
+  const int why = errno;
+  if (lock >= 0) ::close(lock);
+  errno = why;
+  failed_if(!is_placed);
   path_.clear();
   forget(std::exchange(slot_, -1));
 }
