@@ -8,6 +8,7 @@
 #include <array>
 #include <csignal>
 #include <cstdlib>
+#include <initializer_list>
 #include <string>
 #include <string_view>
 
@@ -87,12 +88,18 @@ void end_of_process() {
   const Error error(ErrorCode::device, "OpenCL", "an end of the process by its driver; " + cache_problem().value_or(""),
                     "room in the cache, or POCL_CACHE_DIR=FOLDER elsewhere");
   fail(error.code(), error.what());
+  mark_crash();
   _exit(static_cast<int>(ErrorCode::device));
 }
 
 void end_by_signal(int number) {
   exr::remove_temporary_files();
   raise(number);  // whose handler was reset to that of the system
+}
+
+void note_crash(int number) {
+  mark_crash();
+  raise(number);
 }
 
 /// A stream that the caller has closed would become that of the next file that is opened. Writing to it fails.
@@ -115,15 +122,19 @@ int parse_and_run_safely(int argc, char** argv) {
 }  // namespace
 
 void handle_signals() {
-  for (const int number : {SIGHUP, SIGINT, SIGTERM}) {
-    struct sigaction before = {};
-    sigaction(number, nullptr, &before);
-    if (before.sa_handler != SIG_DFL) continue;
-    struct sigaction action = {};
-    action.sa_handler = end_by_signal;
-    action.sa_flags = static_cast<int>(SA_RESETHAND) | SA_NODEFER;
-    sigaction(number, &action, nullptr);
-  }
+  const auto handle = [](std::initializer_list<int> numbers, void (*handler)(int)) {
+    for (const int number : numbers) {
+      struct sigaction before = {};
+      sigaction(number, nullptr, &before);
+      if (before.sa_handler != SIG_DFL) continue;
+      struct sigaction action = {};
+      action.sa_handler = handler;
+      action.sa_flags = static_cast<int>(SA_RESETHAND) | SA_NODEFER;
+      sigaction(number, &action, nullptr);
+    }
+  };
+  handle({SIGHUP, SIGINT, SIGTERM}, end_by_signal);
+  handle({SIGSEGV, SIGBUS, SIGILL, SIGFPE, SIGABRT}, note_crash);
   std::signal(SIGXFSZ, SIG_IGN);
   std::signal(SIGPIPE, SIG_IGN);
 }
@@ -137,7 +148,7 @@ int run(int argc, char** argv) {
   is_running = true;
   const int code = parse_and_run_safely(argc, argv);
   is_running = false;
-  remove_temporary_cache();
+  close_cache();
   return code;
 }
 
