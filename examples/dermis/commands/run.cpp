@@ -14,6 +14,7 @@
 
 #include "arguments/config_file.hpp"
 #include "arguments/help.hpp"
+#include "arguments/memory_argument.hpp"
 #include "commands/commands.hpp"
 #include "dermis/error.hpp"
 #include "dermis/version.hpp"
@@ -58,6 +59,8 @@ int parse_and_run(int argc, char** argv) {
   const std::array commands{add_filter(app),  add_texture(app),  add_light(app), add_info(app),
                             add_warm(app),    add_profiles(app), add_taps(app),  add_compare_methods(app),
                             add_compare(app), add_preview(app),  add_scene(app), add_devices(app)};
+  for (const char* name : {"filter", "texture", "light", "info", "warm", "compare-methods", "compare", "preview"})
+    add_memory_argument(*app.get_subcommand(name));
   if (argc > 1 && argv[1][0] != '-') check_command(app, argv[1]);
   std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
   if (!words.empty() && words.front()[0] != '-') {
