@@ -232,6 +232,6 @@ int main(int argc, char** argv) {
     say(std::string("error: ") + error.what());
     code = static_cast<int>(error.code());
   }
-  program::remove_temporary_cache();
+  program::close_cache();
   return code;
 }

@@ -1,8 +1,11 @@
 // The image library for the program, which loads it at the first call.
 #include <dlfcn.h>
 
+#include <cstdint>
+
 #include "dermis/error.hpp"
 #include "exr/image_library.hpp"
+#include "exr/memory_limit.hpp"
 
 namespace dermis::exr {
 namespace {
@@ -15,6 +18,8 @@ using Entry = const ImageLibrary* (*)();
 }
 
 const ImageLibrary& load() {
+  // Measured: below 750 MB the loader or OpenEXR's threads fail.
+  require_addresses("image library", std::uint64_t{850} << 20, std::uint64_t{10} << 20);
   // The loader puts the folder of the program in place of $ORIGIN. To bind all functions of 260 libraries at once would
   // take a tenth longer. The module stays loaded, for threads of those libraries run to the end.
   void* const module = dlopen("$ORIGIN/" DERMIS_IMAGE_MODULE, RTLD_LAZY | RTLD_LOCAL);

@@ -13,6 +13,7 @@
 #include "dermis/exr.hpp"
 #include "exr/header.hpp"
 #include "exr/image_library.hpp"
+#include "exr/memory_limit.hpp"
 #include "exr/message_text.hpp"
 #include "exr/part_names.hpp"
 #include "exr/picture_state.hpp"
@@ -102,6 +103,15 @@ std::vector<Part> parts_of(const PictureReader& reader) {
   return parts;
 }
 
+/// What the pixels of a picture take, however few bytes its file has.
+std::uint64_t bytes_of(const std::vector<Part>& parts, const Window& whole) {
+  std::uint64_t pixel_bytes = 0;
+  for (const Part& part : parts) {
+    for (const ChannelName& channel : part.description.channels) pixel_bytes += dermis::bytes_of(channel.format);
+  }
+  return pixel_bytes * static_cast<std::uint64_t>(pixels_of(whole));
+}
+
 PixelBlock block_of(const std::vector<Part>& parts, const Window& whole, std::size_t room) {
   std::vector<ChannelName> channels;
   bool is_full = true;
@@ -162,6 +172,7 @@ Picture Picture::read(const std::filesystem::path& path, std::size_t room) {
     std::vector<Part> parts = parts_of(*reader);
     Picture picture(whole, parts.front().description.display);
     State& state = *picture.state_;
+    require_memory(escaped(path.string()), bytes_of(parts, whole));
     state.pixels = block_of(parts, whole, room);
     std::size_t first = 0;
     for (std::size_t p = 0; p < parts.size(); ++p) {

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <string>
 #include <vector>
 
@@ -249,4 +250,20 @@ TEST_CASE("signals that end the process leave no temporary file") {
     CHECK(WTERMSIG(status) == number);
     CHECK(folder.file_count() == 0);
   }
+}
+
+TEST_CASE("what a killed run was writing goes with the next one, what another still writes stays") {
+  const Made made;
+  fs::create_directory(made.folder / "out");
+  const std::string abandoned = made.folder / "out/.dermis-123.exr";
+  const std::string foreign = made.folder / "out/.dermis-notes.exr";
+  for (const std::string& file : {abandoned, foreign}) std::ofstream(file) << "half a file";
+  const TemporaryFile one(made.folder / "out/one.exr");
+  CHECK_FALSE(fs::exists(abandoned));
+  std::ofstream(abandoned) << "half a file";
+  CHECK(made.filter(made.folder / "out/result.exr").exit_code == 0);
+  CHECK_FALSE(fs::exists(abandoned));
+  CHECK(fs::exists(foreign));
+  CHECK(fs::exists(one.path()));
+  CHECK(fs::exists(made.folder / "out/result.exr"));
 }

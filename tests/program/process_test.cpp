@@ -151,3 +151,65 @@ TEST_CASE("nobody who listens is no reason to stop, nobody who takes the results
     }
   }
 }
+
+namespace {
+
+/// The program under a limit on addresses, in MiB, in a process of its own.
+struct Limited {
+  int exit_code;
+  std::string errors;
+};
+
+Limited run_limited(const TemporaryFolder& folder, const std::string& picture, int limit_mib) {
+  const std::string errors = folder / "errors";
+  const std::string command = "ulimit -c 0; ulimit -v " + std::to_string(limit_mib * 1024) + "; timeout 60 '" +
+                              DERMIS_PROGRAM + "' filter '" + picture + "' -o '" + (folder / "out/out.exr") +
+                              "' --mm-per-unit 1 --profile skin --quality draft --quiet >/dev/null 2>'" + errors + "'";
+  const int status = std::system(command.c_str());
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, bytes_of_file(errors)};
+}
+
+/// Done, or refused in one line that names the limit.
+void check_limited(const TemporaryFolder& folder, const std::string& picture, int limit_mib) {
+  const Limited its = run_limited(folder, picture, limit_mib);
+  CAPTURE(limit_mib, its.errors);
+  if (its.exit_code == 0) {
+    CHECK(std::filesystem::remove(folder / "out/out.exr"));
+    return;
+  }
+  CHECK(its.exit_code == 7);
+  CHECK(has(its.errors, "on addresses (ulimit -v)"));
+  CHECK(its.errors.find('\n') == its.errors.size() - 1);
+  CHECK(std::filesystem::is_empty(folder / "out"));
+}
+
+}  // namespace
+
+TEST_CASE("a limit on memory is held before pixels are read", "[memory]") {
+  const TemporaryFolder folder;
+  const MadeScene scene = make_scene(folder / "in.exr", "sphere", 64, 48, 4);
+  const auto filter = [&](const std::string& limit) {
+    return run_program(filter_arguments(scene, folder / "out.exr",
+                                        {"--material", "1=skin", "--quality", "draft", "--memory-limit", limit}));
+  };
+  check_refused(filter("1M"), 7, {scene.path, "MB of memory to take, want at most 0.0 MB, --memory-limit"});
+  CHECK_FALSE(std::filesystem::exists(folder / "out.exr"));
+  CHECK(filter("100G").exit_code == 0);
+  for (const char* wrong : {"1", "G", "-1G", "1T", "nanG"})
+    check_refused(filter(wrong), 2, {"--memory-limit: got " + std::string(wrong), "want megabytes or gigabytes"});
+  check_refused(run_program({"info", scene.path, "--memory-limit", "1M"}), 7, {"--memory-limit"});
+}
+
+TEST_CASE("a limit on addresses that is too low for threads is told", "[memory]") {
+  const TemporaryFolder folder;
+  std::filesystem::create_directory(folder / "out");
+  const MadeScene scene = make_scene(folder / "in.exr", "sphere", 20, 12, 2);
+  for (const int limit_mib : {500, 1000}) check_limited(folder, scene.path, limit_mib);
+}
+
+TEST_CASE("limits on addresses from 200 MB to 2 GB", "[.limits]") {
+  const TemporaryFolder folder;
+  std::filesystem::create_directory(folder / "out");
+  const MadeScene scene = make_scene(folder / "in.exr", "sphere", 20, 12, 2);
+  for (int limit_mib = 200; limit_mib <= 2000; limit_mib += 25) check_limited(folder, scene.path, limit_mib);
+}

@@ -8,12 +8,15 @@
 
 #include "arguments/number_argument.hpp"
 #include "dermis/error.hpp"
+#include "exr/memory_limit.hpp"
 #include "files/pocl_cache.hpp"
 #include "report/messages.hpp"
 
 namespace dermis::program {
 
 std::vector<DeviceInfo> devices_there_are() {
+  // Measured with PoCL 3.1 on two cores: below 1050 MB its threads, or those of its compiler, may fail to start.
+  exr::require_addresses("OpenCL", std::uint64_t{1200} << 20, std::uint64_t{24} << 20);
   if (const auto warning = cache_warning()) print_warning(*warning);
   std::vector<DeviceInfo> devices = Device::list();
   if (!devices.empty()) return devices;

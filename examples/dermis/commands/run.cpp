@@ -8,11 +8,13 @@
 #include <array>
 #include <csignal>
 #include <cstdlib>
+#include <initializer_list>
 #include <string>
 #include <string_view>
 
 #include "arguments/config_file.hpp"
 #include "arguments/help.hpp"
+#include "arguments/memory_argument.hpp"
 #include "commands/commands.hpp"
 #include "dermis/error.hpp"
 #include "dermis/version.hpp"
@@ -58,6 +60,8 @@ int parse_and_run(int argc, char** argv) {
                             add_warm(app),    add_profiles(app),  add_taps(app),  add_compare_methods(app),
                             add_compare(app), add_preview(app),   add_scene(app), add_devices(app),
                             add_submit(app),  add_completion(app)};
+  for (const char* name : {"filter", "texture", "light", "info", "warm", "compare-methods", "compare", "preview"})
+    add_memory_argument(*app.get_subcommand(name));
   if (argc > 1 && argv[1][0] != '-') check_command(app, argv[1]);
   std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
   if (!words.empty() && words.front()[0] != '-') {
@@ -88,12 +92,18 @@ void end_of_process() {
   const Error error(ErrorCode::device, "OpenCL", "an end of the process by its driver; " + cache_problem().value_or(""),
                     "room in the cache, or POCL_CACHE_DIR=FOLDER elsewhere");
   fail(error.code(), error.what());
+  mark_crash();
   _exit(static_cast<int>(ErrorCode::device));
 }
 
 void end_by_signal(int number) {
   exr::remove_temporary_files();
   raise(number);  // whose handler was reset to that of the system
+}
+
+void note_crash(int number) {
+  mark_crash();
+  raise(number);
 }
 
 /// A stream that the caller has closed would become that of the next file that is opened. Writing to it fails.
@@ -116,15 +126,19 @@ int parse_and_run_safely(int argc, char** argv) {
 }  // namespace
 
 void handle_signals() {
-  for (const int number : {SIGHUP, SIGINT, SIGTERM}) {
-    struct sigaction before = {};
-    sigaction(number, nullptr, &before);
-    if (before.sa_handler != SIG_DFL) continue;
-    struct sigaction action = {};
-    action.sa_handler = end_by_signal;
-    action.sa_flags = static_cast<int>(SA_RESETHAND) | SA_NODEFER;
-    sigaction(number, &action, nullptr);
-  }
+  const auto handle = [](std::initializer_list<int> numbers, void (*handler)(int)) {
+    for (const int number : numbers) {
+      struct sigaction before = {};
+      sigaction(number, nullptr, &before);
+      if (before.sa_handler != SIG_DFL) continue;
+      struct sigaction action = {};
+      action.sa_handler = handler;
+      action.sa_flags = static_cast<int>(SA_RESETHAND) | SA_NODEFER;
+      sigaction(number, &action, nullptr);
+    }
+  };
+  handle({SIGHUP, SIGINT, SIGTERM}, end_by_signal);
+  handle({SIGSEGV, SIGBUS, SIGILL, SIGFPE, SIGABRT}, note_crash);
   std::signal(SIGXFSZ, SIG_IGN);
   std::signal(SIGPIPE, SIG_IGN);
 }
@@ -138,7 +152,7 @@ int run(int argc, char** argv) {
   is_running = true;
   const int code = parse_and_run_safely(argc, argv);
   is_running = false;
-  remove_temporary_cache();
+  close_cache();
   return code;
 }
 

@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "arguments/config_file.hpp"
+#include "arguments/memory_argument.hpp"
 #include "arguments/number_argument.hpp"
 #include "arguments/word_argument.hpp"
 #include "commands/commands.hpp"
@@ -52,6 +53,7 @@ struct FarmJob {
 void check_call(const std::vector<std::string>& words) {
   CLI::App app{"dermis", "dermis"};
   const std::array known{add_filter(app), add_texture(app)};  // these own what options write to
+  for (const Command& one : known) add_memory_argument(*one.app);
   const auto command = std::find_if(known.begin(), known.end(),
                                     [&](const Command& one) { return one.app->get_name() == words.front(); });
   if (command == known.end())

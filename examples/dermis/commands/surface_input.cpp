@@ -11,6 +11,8 @@
 #include <set>
 
 #include "dermis/error.hpp"
+#include "exr/memory_limit.hpp"
+#include "exr/message_text.hpp"
 #include "files/picture_roles.hpp"
 #include "files/surface_pixels.hpp"
 #include "files/view_factor.hpp"
@@ -48,7 +50,13 @@ Frame SurfaceInput::frame(double mm_per_unit) const {
 
 exr::Picture read_picture(const std::string& path) {
   constexpr std::size_t added_channels = 3;  // of one view
-  return exr::Picture::read(path, added_channels);
+  exr::Picture picture = exr::Picture::read(path, added_channels);
+  // The images that are scattered, what surrounds them and what is made of them take about as much again.
+  std::uint64_t pixel_bytes = 0;
+  for (const exr::Channel& channel : picture.channels()) pixel_bytes += bytes_of(channel.format);
+  exr::require_memory(exr::escaped(path), pixel_bytes * static_cast<std::uint64_t>(picture.width()) *
+                                              static_cast<std::uint64_t>(picture.height()));
+  return picture;
 }
 
 SurfaceInput load_surface(exr::Picture& picture, const FrameFile& frame, const std::string& view,

@@ -2,16 +2,20 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <cstdlib>
+#include <exception>
 #include <filesystem>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
 #include "dermis/error.hpp"
+#include "files/kept_kernels.hpp"
 #include "files/user_cache.hpp"
 
 namespace dermis::program {
@@ -21,7 +25,10 @@ namespace fs = std::filesystem;
 
 constexpr const char* variable = "POCL_CACHE_DIR";
 
-fs::path temporary_cache;
+/// The cache of this run, and the kernels that are kept from run to run.
+fs::path cache;
+std::optional<KeptKernels> kept;
+std::string crash_mark;  ///< as a signal handler can use it
 std::optional<std::string> warning;
 bool has_cache = true;
 
@@ -50,15 +57,24 @@ void make_private(const fs::path& folder) {
   ::mkdir(folder.c_str(), S_IRWXU);
 }
 
-/// Why the folder will not do, else nothing.
-std::optional<std::string> problem_of(const fs::path& folder) {
-  if (folder.empty()) return "there is neither HOME nor XDG_CACHE_HOME";
-  make_private(folder);
-  if (auto problem = other_writer(folder)) return problem;
-  if (::access(folder.c_str(), R_OK | W_OK | X_OK) != 0)
-    return fmt::format("{}: {}", folder.string(), std::generic_category().message(errno));
-  return std::nullopt;
-}
+/// A lock on a folder, which ends with it or with the process; false if it cannot be had.
+class Lock {
+ public:
+  Lock(const fs::path& folder, int operation) : file_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
+    is_held_ = file_ >= 0 && ::flock(file_, operation) == 0;
+  }
+  ~Lock() {
+    if (file_ >= 0) ::close(file_);
+  }
+  Lock(const Lock&) = delete;
+  Lock& operator=(const Lock&) = delete;
+
+  explicit operator bool() const { return is_held_; }
+
+ private:
+  int file_;
+  bool is_held_;
+};
 
 /// What the system says of a file of `bytes` in a folder; 0 if there is room for it.
 int error_of_writing(const fs::path& folder, std::size_t bytes) {
@@ -71,6 +87,50 @@ int error_of_writing(const fs::path& folder, std::size_t bytes) {
   return error;
 }
 
+constexpr std::size_t room_bytes = std::size_t{4} << 20;  // more than the largest kernel takes
+
+/// Why the folder is no place for a cache, else nothing.
+std::optional<std::string> problem_of(const fs::path& folder) {
+  if (folder.empty()) return "there is neither HOME nor XDG_CACHE_HOME";
+  make_private(folder);
+  if (auto problem = other_writer(folder)) return problem;
+  if (const int error = error_of_writing(folder, room_bytes))
+    return fmt::format("{}: {}", folder.string(), std::generic_category().message(error));
+  return std::nullopt;
+}
+
+constexpr std::string_view run_prefix = "run-";
+constexpr const char* crashed = "crashed";
+
+/// A folder of that many kept kernels is there for each run; those of runs that are over, by a signal or a crash, go.
+/// What a run that has crashed has used is dropped.
+void remove_ended_runs(const fs::path& folder) {
+  std::error_code error;
+  int dropped = 0;
+  for (const auto& entry : fs::directory_iterator(folder, error)) {
+    if (!entry.path().filename().string().starts_with(run_prefix)) continue;
+    const Lock lock(entry.path(), LOCK_EX | LOCK_NB);
+    if (!lock) continue;  // it is at work
+    if (fs::exists(entry.path() / crashed, error)) dropped += kept->drop_used(entry.path());
+    fs::remove_all(entry.path(), error);
+  }
+  if (dropped > 0)
+    warning = fmt::format("{}: {} programs of kernels were in use in a run that has crashed: they are compiled anew",
+                          folder.string(), dropped);
+}
+
+/// Makes the cache of this run, which is locked until the process ends.
+bool make_cache(const std::string& name) {
+  std::string made = name + "XXXXXX";
+  if (::mkdtemp(made.data()) == nullptr) return false;
+  static std::optional<Lock> lock;
+  lock.emplace(made, LOCK_EX | LOCK_NB);
+  cache = made;
+  crash_mark = cache / crashed;
+  ::setenv(variable, cache.c_str(), 1);
+  return true;
+}
+
 }  // namespace
 
 void choose_cache() {
@@ -81,17 +141,20 @@ void choose_cache() {
   }
   const fs::path usual = user_cache().empty() ? fs::path() : user_cache() / "kernels";
   const auto problem = problem_of(usual);
+  if (!usual.empty() && !other_writer(usual)) kept.emplace(usual);
   if (!problem) {
-    ::setenv(variable, usual.c_str(), 1);
-    return;
+    const Lock lock(usual, LOCK_EX);  // so that no other takes a new folder for one of a run that is over
+    remove_ended_runs(usual);
+    has_cache = make_cache(usual / run_prefix);
+  } else {
+    std::error_code error;
+    const fs::path temporary = fs::temp_directory_path(error);
+    has_cache = !error && make_cache(temporary / "dermis-kernels-") && !other_writer(cache);
+    warning = fmt::format("{}: got nothing, and {}; want a folder: what is compiled is not kept", variable, *problem);
   }
-  std::error_code error;
-  std::string name = (fs::temp_directory_path(error) / "dermis-kernels-XXXXXX").string();
-  if (!error && ::mkdtemp(name.data()) != nullptr) temporary_cache = name;
-  has_cache = !temporary_cache.empty() && !other_writer(temporary_cache);
   // A name that leads nowhere keeps PoCL from its own choice.
-  ::setenv(variable, has_cache ? temporary_cache.c_str() : "/dev/null/none", 1);
-  warning = fmt::format("{}: got nothing, and {}; want a folder: kernels are compiled in each run", variable, *problem);
+  if (!has_cache) ::setenv(variable, "/dev/null/none", 1);
+  if (has_cache && kept) kept->lay_out(cache);
 }
 
 std::optional<std::string> cache_warning() {
@@ -100,13 +163,24 @@ std::optional<std::string> cache_warning() {
   return std::exchange(warning, std::nullopt);
 }
 
-void remove_temporary_cache() noexcept {
+void close_cache() noexcept {
+  if (cache.empty()) return;
   std::error_code ignored;
-  if (!temporary_cache.empty()) fs::remove_all(temporary_cache, ignored);
+  try {
+    if (kept) kept->keep(cache);
+  } catch (const std::exception&) {
+    // What is not kept is compiled again.
+  }
+  fs::remove_all(cache, ignored);
+}
+
+void mark_crash() noexcept {
+  if (crash_mark.empty()) return;
+  const int file = ::open(crash_mark.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, S_IRUSR | S_IWUSR);
+  if (file >= 0) ::close(file);
 }
 
 std::optional<std::string> cache_problem() {
-  constexpr std::size_t room_bytes = std::size_t{4} << 20;  // more than the largest kernel takes
   const char* const folder = std::getenv(variable);
   if (folder == nullptr || *folder == '\0') return std::nullopt;
   std::error_code made;

@@ -7,15 +7,21 @@
 
 namespace dermis::program {
 
-/// Names the folder in POCL_CACHE_DIR for all of the process: what is there if the user has set it; else kernels in the
-/// user's cache of dermis, made for this user alone; else, if that is not to be had, a new temporary folder, which
-/// remove_temporary_cache takes away. To be called before anything else calls OpenCL and before there are threads.
+/// Names the folder in POCL_CACHE_DIR for all of the process: what is there if the user has set it; else a new folder
+/// of this run in the user's cache of dermis, or, if that is not to be had, in the system's temporary one, with the
+/// kernels in it that earlier runs have kept. Runs that have ended by a signal or a crash are cleaned up after. To be
+/// called before anything else calls OpenCL and before there are threads.
 void choose_cache();
 
 /// What is wrong with the folder that was chosen, once. Throws Error(device) if there is none.
 std::optional<std::string> cache_warning();
 
-void remove_temporary_cache() noexcept;
+/// Keeps the kernels that PoCL has compiled for later runs, and removes the folder of this one. Nothing may call OpenCL
+/// any more.
+void close_cache() noexcept;
+
+/// Notes that the process crashes, so that the next run drops the kernels that are in use. For a signal handler.
+void mark_crash() noexcept;
 
 /// "PoCL's cache FOLDER cannot be written (REASON)" if so: without one PoCL has no device, and on a full disk its
 /// compiler ends the process.

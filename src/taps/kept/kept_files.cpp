@@ -57,20 +57,6 @@ struct Header {
 };
 
 constexpr std::size_t digits = 16;
-constexpr std::string_view ending = ".taps";
-
-std::string name_of_file(std::string_view key) {
-  const std::uint64_t hash = checksum(key);
-  std::string name;
-  for (int shift = 60; shift >= 0; shift -= 4) name += "0123456789abcdef"[hash >> shift & 15];
-  return name.append(ending);
-}
-
-/// Files that are being written have more behind the ending.
-bool is_name_of_file(std::string_view name) {
-  return name.size() >= digits + ending.size() && name.substr(digits, ending.size()) == ending &&
-         name.find_first_not_of("0123456789abcdef") == digits;
-}
 
 bool read_all(int file, std::string& bytes) {
   for (std::size_t done = 0; done < bytes.size();) {
@@ -106,7 +92,7 @@ std::uint64_t checksum(std::string_view bytes, std::uint64_t start) {
   return (sum ^ (sum >> 32)) * multiplier;
 }
 
-KeptFiles::KeptFiles(const std::string& folder) {
+KeptFiles::KeptFiles(const std::string& folder, std::string ending) : ending_(std::move(ending)) {
   if (folder.empty()) return;
   make_folder(folder);
   Descriptor opened(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
@@ -118,25 +104,73 @@ KeptFiles::~KeptFiles() {
   if (folder_ >= 0) ::close(folder_);
 }
 
-std::optional<std::string> KeptFiles::get(std::string_view key) const {
-  if (!is_usable()) return std::nullopt;
+std::string KeptFiles::name_of_file(std::string_view key) const {
+  const std::uint64_t hash = checksum(key);
+  std::string name;
+  for (int shift = 60; shift >= 0; shift -= 4) name += "0123456789abcdef"[hash >> shift & 15];
+  return name.append(ending_);
+}
+
+/// Files that are being written have more behind the ending.
+bool KeptFiles::is_name_of_file(std::string_view name) const {
+  return name.size() >= digits + ending_.size() && name.substr(digits, ending_.size()) == ending_ &&
+         name.find_first_not_of("0123456789abcdef") == digits;
+}
+
+std::vector<std::string> KeptFiles::names() const {
+  std::vector<std::string> result;
+  // A descriptor of its own, for it has its own place in the list of files, and closedir closes it.
+  DIR* const list = ::fdopendir(::openat(folder_, ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (list == nullptr) return result;
+  while (const dirent* const entry = ::readdir(list)) {
+    if (is_name_of_file(entry->d_name)) result.emplace_back(entry->d_name);
+  }
+  ::closedir(list);
+  return result;
+}
+
+std::optional<KeptFiles::Entry> KeptFiles::read(const std::string& name) const {
   // A link may lead anywhere, and a pipe would never open.
-  const Descriptor file(::openat(folder_, name_of_file(key).c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
+  const Descriptor file(::openat(folder_, name.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
   struct stat its {};
   if (*file < 0 || ::fstat(*file, &its) != 0 || !S_ISREG(its.st_mode) || !is_of_this_user_alone(its)) return {};
   const auto size = static_cast<std::uint64_t>(its.st_size);
-  if (size < sizeof(Header) + key.size() || size > most_bytes_of_file) return std::nullopt;
+  if (size < sizeof(Header) || size > most_bytes_of_file) return std::nullopt;
   std::string bytes(size, '\0');
   if (!read_all(*file, bytes)) return std::nullopt;
   Header header;
   std::memcpy(&header, bytes.data(), sizeof(header));
   const std::string_view rest = std::string_view(bytes).substr(sizeof(header));
-  if (header.magic != Header{}.magic || header.key_bytes != key.size() || !rest.starts_with(key) ||
+  if (header.magic != Header{}.magic || header.key_bytes > rest.size() ||
       header.checksum != checksum(rest, header.key_bytes)) {
     return std::nullopt;
   }
-  ::futimens(*file, nullptr);  // it was used now
-  return bytes.substr(sizeof(header) + key.size());
+  return Entry{std::string(rest.substr(0, header.key_bytes)), std::string(rest.substr(header.key_bytes))};
+}
+
+std::optional<std::string> KeptFiles::get(std::string_view key) const {
+  if (!is_usable()) return std::nullopt;
+  const std::string name = name_of_file(key);
+  auto entry = read(name);
+  if (!entry || entry->key != key) return std::nullopt;
+  ::utimensat(folder_, name.c_str(), nullptr, AT_SYMLINK_NOFOLLOW);  // it was used now
+  return std::move(entry->content);
+}
+
+void KeptFiles::for_each(const std::function<void(std::string_view, std::string_view)>& take) const {
+  if (!is_usable()) return;
+  for (const std::string& name : names()) {
+    if (name.size() > digits + ending_.size()) continue;  // it is being written
+    if (const auto entry = read(name); entry && name == name_of_file(entry->key)) {
+      take(entry->key, entry->content);
+    } else {
+      ::unlinkat(folder_, name.c_str(), 0);
+    }
+  }
+}
+
+void KeptFiles::remove(std::string_view key) const {
+  if (is_usable()) ::unlinkat(folder_, name_of_file(key).c_str(), 0);
 }
 
 void KeptFiles::put(std::string_view key, std::string_view content) const {
@@ -168,20 +202,16 @@ void KeptFiles::remove_longest_unused() const {
     std::uint64_t bytes;
   };
   constexpr std::uint64_t block = 512;
-  // A descriptor of its own, for it has its own place in the list of files, and closedir closes it.
-  DIR* const list = ::fdopendir(::openat(folder_, ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-  if (list == nullptr) return;
   std::vector<File> files;
   std::uint64_t sum = 0;
-  while (const dirent* const entry = ::readdir(list)) {
+  for (const std::string& name : names()) {
     struct stat its {};
-    if (!is_name_of_file(entry->d_name) || ::fstatat(folder_, entry->d_name, &its, AT_SYMLINK_NOFOLLOW) != 0) continue;
+    if (::fstatat(folder_, name.c_str(), &its, AT_SYMLINK_NOFOLLOW) != 0) continue;
     const auto bytes =
         std::max(static_cast<std::uint64_t>(its.st_size), block * static_cast<std::uint64_t>(its.st_blocks));
-    files.push_back({entry->d_name, {its.st_mtim.tv_sec, its.st_mtim.tv_nsec}, bytes});
+    files.push_back({name, {its.st_mtim.tv_sec, its.st_mtim.tv_nsec}, bytes});
     sum += bytes;
   }
-  ::closedir(list);
   std::sort(files.begin(), files.end(), [](const File& a, const File& b) { return a.used < b.used; });
   for (const File& file : files) {
     if (sum <= most_bytes) return;

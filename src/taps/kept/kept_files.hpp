@@ -2,9 +2,11 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace dermis {
 
@@ -16,8 +18,8 @@ std::uint64_t checksum(std::string_view bytes, std::uint64_t start = 0);
 class KeptFiles {
  public:
   /// Makes the folder if it is missing, for this user alone. An empty name, or a folder that is not to be trusted,
-  /// keeps nothing.
-  explicit KeptFiles(const std::string& folder);
+  /// keeps nothing. `ending`: of the names of its files.
+  explicit KeptFiles(const std::string& folder, std::string ending = ".taps");
   ~KeptFiles();
   KeptFiles(const KeptFiles&) = delete;
   KeptFiles& operator=(const KeptFiles&) = delete;
@@ -27,6 +29,11 @@ class KeptFiles {
   /// What was put in under an equal key, if it is there unchanged.
   std::optional<std::string> get(std::string_view key) const;
 
+  /// Hands over all that is there unchanged, and removes what is not. None of it counts as used.
+  void for_each(const std::function<void(std::string_view key, std::string_view content)>& take) const;
+
+  void remove(std::string_view key) const;
+
   /// Replaces what is there. The longest unused files go, so that all together take no more than most_bytes.
   void put(std::string_view key, std::string_view content) const;
 
@@ -35,8 +42,18 @@ class KeptFiles {
                                                       << 20;  ///< larger ones are neither kept nor read
 
  private:
+  struct Entry {
+    std::string key, content;
+  };
+
+  std::string name_of_file(std::string_view key) const;
+  bool is_name_of_file(std::string_view name) const;
+  std::vector<std::string> names() const;
+  /// What a file holds, if it is unchanged.
+  std::optional<Entry> read(const std::string& name) const;
   void remove_longest_unused() const;
 
+  std::string ending_;
   int folder_ = -1;  ///< a file descriptor
 };
 

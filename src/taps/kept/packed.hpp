@@ -113,6 +113,15 @@ class Unpacked {
     }
   }
 
+  void take(std::string& text) {
+    std::uint64_t size = 0;
+    take(size);
+    is_sound_ = is_sound_ && size <= left_.size();
+    if (!is_sound_) return;
+    text.resize(size);
+    copy(text.data(), size);
+  }
+
   template <class Element, std::size_t count>
   void take(std::array<Element, count>& elements) {
     if constexpr (IsPlain<Element>::value) {
