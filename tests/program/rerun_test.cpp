@@ -1,5 +1,5 @@
 // Sequences whose frames are read, filtered and written side by side: what a second run makes again, what it would do,
-// and what is left when one is ended.
+// what is left when one is ended, and how far it is.
 #include <signal.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
@@ -7,8 +7,12 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
 #include <regex>
+#include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "dermis/exr.hpp"
@@ -96,7 +100,7 @@ std::string made_again(const MadeShot& shot, const Outcome& outcome, const std::
 
 }  // namespace
 
-TEST_CASE("--skip-existing leaves what is whole and as asked for, and makes the rest again, with the reason") {
+TEST_CASE("skip-existing leaves what is whole and as asked for, and makes the rest again, with the reason") {
   const MadeShot shot(3);
   CHECK(shot.filter().exit_code == 0);
   const std::vector<std::string> results = {bytes_of_file(shot.output(1)), bytes_of_file(shot.output(2)),
@@ -244,4 +248,104 @@ TEST_CASE("whatever ends a sequence, results are whole, and a second run complet
       if (random.coin()) fs::remove(shot.output(frame));
     }
   }
+}
+
+namespace {
+
+/// Frames 1 to 4: as it should be, cut, of another material, not there.
+struct ShotWithFaults {
+  TemporaryFolder folder;
+
+  ShotWithFaults() {
+    const MadeScene scene = make_scene(folder / "in.1.exr", "sphere", 30, 20, 3);
+    const std::string bytes = bytes_of_file(scene.path);
+    write_bytes(folder / "in.2.exr", bytes.substr(0, bytes.size() / 2));
+    PictureCopy(scene.path).with("ViewLayer.IndexMA.X", std::vector<float>(600, 9)).write(folder / "in.3.exr");
+  }
+
+  Outcome filter(const std::string& frames, const Words& more) const {
+    Words words = {"filter", folder / "in.#.exr", "-o",    folder / "out.#.exr", "--mm-per-unit", "1", "--material",
+                   "1=skin", "--quality",         "draft", "--frames",           frames};
+    words.insert(words.end(), more.begin(), more.end());
+    return run_program(words);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("progress says on standard output what farms look for, from 0 to 100 %") {
+  const ShotWithFaults shot;
+  const std::vector<std::pair<std::string, std::string>> styles = {{"percent", R"(Progress: (\d+)%)"},
+                                                                   {"alf", R"(ALF_PROGRESS (\d+)%)"},
+                                                                   {"openjd", R"(openjd_progress: (\d+\.\d))"}};
+  for (const auto& [style, form] : styles) {
+    const Outcome outcome = shot.filter("1,3", {"--progress", style, "--quiet"});
+    INFO(style << '\n' << outcome.output << outcome.errors);
+    CHECK(outcome.exit_code == 0);
+    CHECK(outcome.errors.empty());
+    double last = -1;
+    bool has_status = false;
+    std::istringstream lines(outcome.output);
+    for (std::string line; std::getline(lines, line);) {
+      std::smatch number;
+      if (std::regex_match(line, number, std::regex(form))) {
+        const double percent = std::stod(number[1]);
+        CHECK(percent >= last);
+        last = percent;
+      } else {
+        CHECK(style == "openjd");
+        CHECK(line.starts_with("openjd_status: "));
+        has_status = has_status || line == "openjd_status: 1 of 2, planning";
+      }
+    }
+    CHECK(last == 100);
+    CHECK(has_status == (style == "openjd"));
+  }
+  CHECK(shot.filter("1", {"--progress", "auto", "--quiet"}).output.empty());
+  check_refused(shot.filter("1", {"--progress", "alf", "--stats-json", "-"}), 2,
+                {"--progress: got alf with --stats-json"});
+}
+
+TEST_CASE("report has a record of each picture, and no end before the call has one") {
+  const ShotWithFaults shot;
+  const std::string path = shot.folder / "report.json";
+  const auto report = [&] {
+    std::ifstream file(path);
+    return nlohmann::json::parse(file);
+  };
+  const Outcome outcome = shot.filter("1-4", {"--report", path});
+  INFO(outcome.errors);
+  CHECK(outcome.exit_code == 8);
+  nlohmann::json all = report();
+  CHECK(all["exit_code"] == 8);
+  CHECK(has(all["config"], "quality"));
+  REQUIRE(all["pictures"].size() == 4);
+  const auto record = [&](std::size_t i, int frame, const std::string& status) {
+    const nlohmann::json& its = all["pictures"][i];
+    CHECK(its["frame"] == frame);
+    CHECK(its["input"] == shot.folder / ("in." + std::to_string(frame) + ".exr"));
+    CHECK(its["status"] == status);
+    return its;
+  };
+  record(0, 4, "missing");
+  const nlohmann::json filtered = record(1, 1, "filtered");
+  CHECK(filtered["output"] == shot.folder / "out.1.exr");
+  CHECK(filtered["views"][0]["pixels"]["scattered"].get<int>() > 0);
+  CHECK(filtered["views"][0]["times_ms"]["write"].get<double>() > 0);
+  const nlohmann::json failed = record(2, 2, "failed");
+  CHECK(failed["exit_code"] == 4);
+  CHECK(has(failed["message"], "in.2.exr"));
+  record(3, 3, "copied");
+
+  CHECK(shot.filter("1", {"--report", path, "--skip-existing"}).exit_code == 0);
+  all = report();
+  CHECK(all["exit_code"] == 0);
+  record(0, 1, "skipped");
+  check_refused(shot.filter("1", {"--report", shot.folder / "none/report.json"}), 6, {"--report: got"});
+  CHECK(run_program({"filter", shot.folder / "in.2.exr", "-o", shot.folder / "x.exr", "--mm-per-unit", "1", "--profile",
+                     "skin", "--report", path})
+            .exit_code == 4);
+  all = report();
+  CHECK(all["exit_code"] == 4);
+  record(0, 2, "failed");
 }

@@ -14,8 +14,8 @@ struct Outcome {
 /// True if a text has such a part.
 inline bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
-/// True for a line of stderr "dermis: input: ...", or that a kernel is larger than the picture, as it often is in
-/// pictures that are made small to be quick.
+/// True for a line of stderr "dermis: input: ...", that a kernel is larger than the picture, as it often is in pictures
+/// that are made small to be quick, or how far a run that takes long is, "dermis: planning: 10 %".
 bool is_input(const std::string& line);
 
 /// The variable with the number of the OpenCL call that fails in a run.

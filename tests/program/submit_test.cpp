@@ -55,7 +55,9 @@ TEST_CASE("the tasks of a Slurm job do each frame once, and nothing if they are 
   CHECK(has(script, "#SBATCH --cpus-per-task=1\n"));
   CHECK(has(script, "#SBATCH --mem=700M\n"));
   CHECK(has(script, "#SBATCH --requeue\n"));
-  std::ofstream(folder / "job") << script;
+  // The job names the program that made it, which is that of the tests here.
+  const std::size_t command = script.find(" filter ");
+  std::ofstream(folder / "job") << "exec " << DERMIS_PROGRAM << script.substr(command);
   const auto run_tasks = [&] {
     for (const char* task : {"1", "2"})
       REQUIRE(run_in_shell(std::string("SLURM_ARRAY_TASK_ID=") + task + " bash '" + (folder / "job") + "' 2>> '" +

@@ -23,7 +23,7 @@ constexpr std::string_view config = "--config";
 constexpr std::array of_a_call = {"file",     "--output",        "--in-place",  "--preview", "--tile-map",
                                   "--frames", "--view-report",   "--stats",     "--quiet",   "--stats-json",
                                   "--chunk",  "--keep-going",    "--cache-dir", "--threads", "--config",
-                                  "--device", "--skip-existing", "--dry-run"};
+                                  "--device", "--skip-existing", "--dry-run",   "--report",  "--progress"};
 
 /// The file that --config names; empty if it is not given.
 std::string file_of(const std::vector<std::string>& arguments) {

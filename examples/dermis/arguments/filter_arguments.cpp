@@ -67,6 +67,15 @@ void add_result_arguments(CLI::App& app, FilterArguments& arguments) {
   app.add_flag("--allow-empty", arguments.may_be_empty,
                "copy a picture in which nothing scatters; else that is an error");
   add_stats_arguments(app, arguments.output);
+  app.add_option(
+         "--report", arguments.report,
+         "write what became of each picture as JSON: status, times, pixels, settings, messages; the file is whole "
+         "whenever it is read")
+      ->check(file_name_ending({".json"}))
+      ->type_name("FILE.json");
+  add_word(app, "--progress", arguments.progress,
+           "how far it is: auto, a bar on a terminal, else plain, lines on stderr; for farms on stdout percent, "
+           "\"Progress: 42%\", alf, \"ALF_PROGRESS 42%\", or openjd, \"openjd_progress: 42.0\"");
   add_message_arguments(app, arguments.messages);
 }
 

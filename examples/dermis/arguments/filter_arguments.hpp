@@ -16,6 +16,7 @@
 #include "dermis/words.hpp"
 #include "files/beauty_composition.hpp"
 #include "report/messages.hpp"
+#include "report/progress_bar.hpp"
 
 namespace dermis::program {
 
@@ -36,6 +37,8 @@ struct FilterArguments {
   bool is_dry_run = false;
   bool skips_existing = false;  ///< results that are what would be made
   MessageArguments messages;
+  ProgressStyle progress = ProgressStyle::automatic;
+  std::string report;
   SurfaceArguments surface;
   DeviceArguments device;
   std::optional<std::string> cache_dir;  ///< as cache_folder_of takes it

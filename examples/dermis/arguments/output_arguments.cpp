@@ -137,7 +137,7 @@ Shot without_missing(std::span<const PictureFiles> pictures) {
   for (auto& [pattern, frames] : missing) {
     std::sort(frames.begin(), frames.end());
     shot.missing_count += frames.size();
-    shot.missing.emplace_back(ErrorCode::input_missing, pattern, "no frames " + ranges_text(frames), "their files");
+    shot.missing.push_back({pattern, std::move(frames)});
   }
   return shot;
 }

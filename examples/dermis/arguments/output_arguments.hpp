@@ -38,10 +38,18 @@ struct PictureFiles {
   OutputFiles outputs;
 };
 
+/// Frames of a pattern whose files are not there.
+struct MissingFrames {
+  std::string pattern;
+  std::vector<std::int64_t> frames;  ///< ascending
+
+  Error error() const { return {ErrorCode::input_missing, pattern, "no frames " + ranges_text(frames), "their files"}; }
+};
+
 /// The pictures that a call works on.
 struct Shot {
   std::vector<PictureFiles> pictures;  ///< those of the chunk
-  std::vector<Error> missing;          ///< for each pattern, if frames of it are not there, which ones
+  std::vector<MissingFrames> missing;
   std::size_t missing_count = 0;
   std::size_t pictures_in_all = 0;  ///< of all chunks, with those that are missing
   bool is_sequence = false;         ///< several, or named by a pattern

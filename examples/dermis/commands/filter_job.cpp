@@ -10,6 +10,7 @@
 #include "arguments/cache_argument.hpp"
 #include "arguments/profile_argument.hpp"
 #include "dermis/error.hpp"
+#include "files/output_file.hpp"
 #include "files/result_record.hpp"
 
 namespace dermis::program {
@@ -103,6 +104,18 @@ Options options_of(const FilterArguments& arguments) {
   return options;
 }
 
+/// Refuses a report that cannot be written before the work that it is about, and two kinds of text on standard output.
+void check_report(const FilterArguments& arguments) {
+  const bool is_for_farm = arguments.progress != ProgressStyle::automatic && arguments.progress != ProgressStyle::plain;
+  if (is_for_farm && arguments.output.files.stats_json == "-")
+    throw Error(ErrorCode::usage, "--progress", fmt::format("{} with --stats-json -", name_of(arguments.progress)),
+                "only one of them on standard output");
+  if (arguments.report.empty()) return;
+  const OutputArguments& output = arguments.output;
+  check_outputs({{"--output", output.files.output}, {"--stats-json", output.files.stats_json}},
+                {{"--report", arguments.report}});
+}
+
 std::string command_of(const FilterArguments& arguments, const FilterJob& job) {
   const Options& options = job.options;
   std::string text = "filter";
@@ -166,8 +179,11 @@ FilterJob job_of(const FilterArguments& arguments) {
                 .keeps_going = arguments.output.keeps_going,
                 .skips_existing = arguments.skips_existing,
                 .messages = arguments.messages,
+                .progress = arguments.progress,
+                .report = arguments.report,
                 .device = arguments.device,
                 .command = {}};
+  check_report(arguments);
   if (arguments.skips_existing && arguments.output.in_place)
     throw Error(ErrorCode::usage, "--skip-existing", "it with --in-place",
                 "results that do not take the place of what they are made from");

@@ -24,6 +24,8 @@ struct FilterJob {
   bool keeps_going;
   bool skips_existing;  ///< results that are what would be made
   MessageArguments messages;
+  ProgressStyle progress;
+  std::string report;  ///< a file; or empty
   DeviceArguments device;
   // For the record in the result:
   std::string settings = {};     ///< as TOML

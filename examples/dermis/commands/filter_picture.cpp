@@ -24,7 +24,6 @@
 #include "files/picture_png.hpp"
 #include "files/picture_roles.hpp"
 #include "files/view_factor.hpp"
-#include "report/progress_bar.hpp"
 #include "report/standard_output.hpp"
 #include "report/stopwatch.hpp"
 #include "report/tile_map.hpp"
@@ -73,13 +72,10 @@ void check_tiles(const std::string& tile_map, Method method, const DeviceInfo& d
     throw Error(ErrorCode::usage, "--tile-map", tile_map + " on a GPU", "a device that works tile by tile, as a CPU");
 }
 
-/// The progress bar goes before anything else is printed.
-Stats run_plan(FilterSession& session, const Frame& frame, const std::vector<LoadedView>& views, bool quiet) {
-  std::optional<ProgressBar> bar;
-  if (!quiet) bar.emplace();
+Stats run_plan(FilterSession& session, const Frame& frame, const std::vector<LoadedView>& views, const Told& told) {
   try {
     return session.run(frame, [&](double share) {
-      if (bar) bar->update(share);
+      told("filtering", share);
       return true;
     });
   } catch (const Error& error) {
@@ -215,7 +211,7 @@ ViewResult copy_view(const FilterJob& job, SurfaceInput& input, FilterSession& s
 /// One view of a picture: its scattered light and its beauty come into the picture's channels. It is copied if nothing
 /// in it scatters and that is allowed, as it is in a sequence.
 ViewResult filter_view(const FilterJob& job, const PictureFiles& files, ReadView& view, FilterSession& session,
-                       Messages& messages) {
+                       Messages& messages, const Told& told) {
   SurfaceInput& input = view.input;
   Stopwatch step;
   StepTimes times;
@@ -243,6 +239,7 @@ ViewResult filter_view(const FilterJob& job, const PictureFiles& files, ReadView
       take_light_from_beauty(parts, scatters, compose == Compose::beauty, input.loaded.light);
   }
 
+  told("planning", 0);
   const Device& device = session.device();
   for (const std::string& note :
        device_notes(is_device_named(job.device), device.info(), Device::list().size(), job.reuse))
@@ -258,7 +255,7 @@ ViewResult filter_view(const FilterJob& job, const PictureFiles& files, ReadView
     throw named_as_option(error);
   }
   times.plan_ms = step.lap_ms();
-  Stats stats = run_plan(session, frame, input.loaded_views, messages.quiet());
+  Stats stats = run_plan(session, frame, input.loaded_views, told);
   warn_of_bad_pixels(stats, job.options.bad_pixels, messages);
   report_views(input.loaded_views, stats, messages);
   times.run_ms = step.lap_ms();
@@ -347,11 +344,11 @@ PreparedView prepare_view(const FilterJob& job, SurfaceInput& input, Messages& m
 }
 
 FilteredPicture filter_picture(const FilterJob& job, const PictureFiles& files, std::unique_ptr<ReadPicture> read,
-                               FilterSession& session, Messages& messages) {
+                               FilterSession& session, Messages& messages, const Told& told) {
   std::vector<ViewResult> results;
   for (ReadView& view : read->views) {
     warn_of_input(view.input.roles, view.input.camera, messages);
-    results.push_back(filter_view(job, files, view, session, messages));
+    results.push_back(filter_view(job, files, view, session, messages, told));
   }
   read->views.clear();  // for the memory
   for (ViewResult& result : results) {
@@ -359,7 +356,7 @@ FilteredPicture filter_picture(const FilterJob& job, const PictureFiles& files, 
     result.report.notes = messages.notes();
     result.report.warnings = messages.warnings();
   }
-  return {std::move(read), std::move(results)};
+  return {std::move(read), std::move(results), {}};
 }
 
 double write_filtered(const FilterJob& job, const OutputFiles& files, FilteredPicture& filtered) {
@@ -398,7 +395,7 @@ void report_filtered(const FilterJob& job, const OutputFiles& files, FilteredPic
     if (!files.tile_map.empty()) print(legend_of(view.report.stats.tiles));
     if (view.views_report) print(legend_of(*view.views_report, view.report.views));
     if (job.stats) print(text_of(view.report));
-    reports.push_back(std::move(view.report));
+    reports.push_back(view.report);
   }
   if (!files.stats_json.empty()) write_text_or_print("--stats-json", files.stats_json, json_text_of(reports));
 }

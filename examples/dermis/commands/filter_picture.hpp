@@ -2,9 +2,12 @@
 /// after.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "commands/filter_job.hpp"
@@ -47,7 +50,11 @@ struct ViewResult {
 struct FilteredPicture {
   std::unique_ptr<ReadPicture> read;  ///< with the result in its channels
   std::vector<ViewResult> views;
+  std::optional<std::string> why_again;  ///< as Arrival says
 };
+
+/// Is told what is being done with a picture, and how much of that is done, 0..1.
+using Told = std::function<void(std::string_view what, double share)>;
 
 /// What the result of a frame is to be made of. Throws Error(input_missing) for files that cannot be read.
 ResultRecord record_of(const FilterJob& job, const FrameFile& frame);
@@ -79,7 +86,7 @@ PreparedView prepare_view(const FilterJob& job, SurfaceInput& input, Messages& m
 
 /// The second step, which says what it does.
 FilteredPicture filter_picture(const FilterJob& job, const PictureFiles& files, std::unique_ptr<ReadPicture> read,
-                               FilterSession& session, Messages& messages);
+                               FilterSession& session, Messages& messages, const Told& told);
 
 /// The third step: the result, and what is to be seen beside it. None takes its place before all are written. Returns
 /// how long it took. Throws Error(output).

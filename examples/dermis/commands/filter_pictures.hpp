@@ -8,7 +8,7 @@ namespace dermis::program {
 
 /// While a picture is filtered the next one is read and the last one is written: at most three are in memory at a time.
 /// A picture that fails is named, and others are done nevertheless, as the job says. Returns the exit code; throws
-/// Error(device) if there is no device, and what befalls a picture that is none of a sequence.
+/// Error(device) if there is no device.
 int filter_pictures(const FilterJob& job, Messages& messages);
 
 }  // namespace dermis::program

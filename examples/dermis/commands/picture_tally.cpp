@@ -6,16 +6,16 @@ namespace dermis::program {
 
 PictureTally::PictureTally(const Shot& shot, bool keeps_going, const Messages& messages)
     : is_sequence_(shot.is_sequence), pictures_(shot.size()), keeps_going_(keeps_going), failed_(shot.missing_count) {
-  for (const Error& error : shot.missing) print_error(error.what());
+  for (const MissingFrames& missing : shot.missing) print_error(missing.error().what());
   if (failed_ > 0) first_code_ = static_cast<int>(ErrorCode::input_missing);
   if (pictures_ == 0)
     messages.progress(fmt::format("no picture of {} is in this chunk: there is nothing to do", shot.pictures_in_all));
 }
 
-void PictureTally::fail(const std::string& input) {
-  if (!is_sequence_) throw;
-  const int code = report_exception(input);
-  if (failed_++ == 0) first_code_ = code;
+Failure PictureTally::fail(const std::string& input) {
+  Failure failure = report_exception(is_sequence_ ? input : "");
+  if (failed_++ == 0) first_code_ = failure.code;
+  return failure;
 }
 
 int PictureTally::finish() const {

@@ -20,9 +20,8 @@ class PictureTally {
   /// Whether the next picture is to be done.
   bool goes_on() const { return keeps_going_ || failed_ == 0; }
 
-  /// For a handler of the exception that befell a picture: names the picture, or throws the exception on if it is none
-  /// of a sequence.
-  void fail(const std::string& input);
+  /// For a handler of the exception that befell a picture: prints it, with the name of a picture of a sequence.
+  Failure fail(const std::string& input);
 
   void succeed() { ++done_; }
 

@@ -119,7 +119,7 @@ int parse_and_run_safely(int argc, char** argv) {
   try {
     return parse_and_run(argc, argv);
   } catch (...) {
-    return report_exception();
+    return report_exception().code;
   }
 }
 

@@ -11,6 +11,7 @@
 
 #include "exr/message_text.hpp"
 #include "files/pocl_cache.hpp"
+#include "report/progress_bar.hpp"
 
 namespace dermis::program {
 namespace {
@@ -19,18 +20,19 @@ namespace {
 /// can be told, the work goes on.
 void print_line(std::string_view message) {
   constexpr std::size_t longest = 8000;
+  ProgressBar::make_way();
   std::fflush(stdout);
   std::fputs(fmt::format("dermis: {}\n", exr::escaped(message, longest)).c_str(), stderr);
 }
 
 /// A device that fails may do so because PoCL cannot keep what it compiles, which it does not say.
-int report(ErrorCode code, std::string_view file, std::string_view message) {
+Failure report(ErrorCode code, std::string_view file, std::string_view message) {
   std::string line(message);
   if (!file.empty() && !message.starts_with(file)) line = fmt::format("{}: {}", file, message);
   const auto problem = code == ErrorCode::device ? cache_problem() : std::nullopt;
   if (problem && line.find(*problem) == std::string::npos) line += fmt::format(" ({})", *problem);
   print_error(line);
-  return static_cast<int>(code);
+  return {static_cast<int>(code), line};
 }
 
 }  // namespace
@@ -66,7 +68,7 @@ void print_warning(std::string_view text) { print_line(fmt::format("warning: {}"
 
 void print_error(std::string_view message) { print_line(fmt::format("error: {}", message)); }
 
-int report_exception(std::string_view file) {
+Failure report_exception(std::string_view file) {
   try {
     throw;
   } catch (const Error& error) {

@@ -60,8 +60,13 @@ void print_warning(std::string_view text);
 /// "dermis: error: MESSAGE", for a run that goes on to its end.
 void print_error(std::string_view message);
 
+struct Failure {
+  int code;  ///< for the end of the process
+  std::string message;
+};
+
 /// Prints the exception that is being handled, with the file that it befell unless it has no name or the message begins
-/// with it. Returns its exit code.
-int report_exception(std::string_view file = {});
+/// with it.
+Failure report_exception(std::string_view file = {});
 
 }  // namespace dermis::program

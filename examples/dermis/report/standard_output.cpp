@@ -1,23 +1,28 @@
 #include "report/standard_output.hpp"
 
+#include <atomic>
 #include <cerrno>
 #include <cstdio>
 #include <system_error>
 
 #include "exr/message_text.hpp"
+#include "report/progress_bar.hpp"
 
 namespace dermis::program {
 namespace {
 
-int first_error = 0;
+/// Lines come from several threads.
+std::atomic<int> first_error = 0;
 
 void remember_error() {
-  if (first_error == 0) first_error = errno;
+  int none = 0;
+  first_error.compare_exchange_strong(none, errno);
 }
 
 }  // namespace
 
 void print(std::string_view lines) {
+  ProgressBar::make_way();
   const std::string text = exr::escaped_lines(lines);
   if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size()) remember_error();
 }

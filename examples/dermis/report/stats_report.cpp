@@ -130,6 +130,8 @@ std::string text_of_steps(const StatsReport& report) {
   return text;
 }
 
+}  // namespace
+
 json json_of(const StatsReport& report) {
   const Stats& stats = report.stats;
   const double tolerance = tolerance_of(report.asked);
@@ -164,8 +166,6 @@ json json_of(const StatsReport& report) {
   for (const MaterialReport& material : report.materials) object["materials"].push_back(json_of(material));
   return object;
 }
-
-}  // namespace
 
 std::string text_of(const StatsReport& report) {
   const Stats& stats = report.stats;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -47,6 +48,8 @@ struct StatsReport {
 };
 
 std::string text_of(const StatsReport& report);
+
+nlohmann::json json_of(const StatsReport& report);
 
 /// An object for one view, or {"views": [...]} for several.
 std::string json_text_of(const std::vector<StatsReport>& views);
