@@ -18,16 +18,17 @@ kernel void segments(struct FrameParams f, struct FrameLayouts layouts, global c
   store_floats(vertical_segment + at, share * segment_at(&f, &w, x, y, 1).length);
 }
 
-// A work-item has a row of a block.
+// A work-item has a run of pixels.
 kernel void shears(struct FrameParams f, struct WindowParams window, global uchar* memory) {
   const Window w = window_in(&window, memory);
-  const int first = get_global_id(0) * BLOCK;
+  const int first = get_global_id(0) * SHEAR_RUN;
   const int y = get_global_id(1);
   if (first >= f.width) return;
   RunShears shears;
-  for (int i = 0; i < BLOCK; ++i) {
+#pragma unroll
+  for (int i = 0; i < SHEAR_RUN; ++i) {
     const Segment segment = segment_at(&f, &w, first + i, y, 1);
     add_shears(&shears, &segment, i);
   }
-  store_shears(&shears, w.shear + pixel_at(&w, first, y) / SHEAR_RUN);
+  w.shear[pixel_at(&w, first, y) / SHEAR_RUN] = shear_of_run(vload8(0, shears.shear), vload8(0, shears.is_material));
 }

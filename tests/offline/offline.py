@@ -26,9 +26,8 @@ BUILT_IN = "/usr/lib/clc/"
 MOST_REGISTERS = 128
 
 # Kernels of the plans of the separable method that do not keep the bounds yet, for all plans or for those with many images: arrays
-# with an index that varies (shears, curvature, view_surface), pow of libclc (prepare, finish), too many registers (scatter_y from
-# rank 3 on, hidden_light).
-NOT_YET = {"curvature", "finish", "hidden_light", "prepare", "scatter_y", "shears", "view_surface"}
+# with an index that varies (curvature, view_surface), pow of libclc (prepare, finish), too many registers (hidden_light).
+NOT_YET = {"curvature", "finish", "hidden_light", "prepare", "view_surface"}
 
 
 class Program(NamedTuple):

@@ -166,7 +166,7 @@ TEST_CASE("a limit of memory makes bands, in place and out of buffers", "[bands]
   CHECK(stats.bands > 3);
   CHECK(in_place == expected);
   CHECK(stats.tiles.kinds.size() == static_cast<std::size_t>(stats.tiles.columns) * stats.tiles.rows);
-  CHECK(stats.tiles.rows * stats.tiles.tile_height >= height);
+  CHECK((stats.tiles.kinds.empty() || stats.tiles.rows * stats.tiles.tile_height >= height));  // GPUs have none
 
   // Nothing is written of what ends the run before the first band is done, or of a frame with bad pixels.
   in_place = light;

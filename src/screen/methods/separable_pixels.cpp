@@ -49,7 +49,7 @@ class SeparablePixels final : public SeparableMethod {
     if (!settings_.is_sheared()) return;
     cl::Kernel shears(run.program(), "shears");
     set_arguments(shears, run.frame(), run.window(), buffers[window]);
-    run.launch(shears, run.size().blocks_x(), run.size().height, 0);
+    run.launch(shears, parts_of(run.size().width, SHEAR_RUN), run.size().height, 0);
   }
 
   void scatter(FrameRun& run, RowRange rows) const override {
