@@ -118,10 +118,6 @@ int dry_run(FilterJob job, Messages& messages) {
   std::size_t copied = 0;
   std::size_t there = 0;
   PictureMemory most;
-  const std::size_t of_program = [&] {
-    if (!job.shot.pictures.empty()) session.device();
-    return resident_bytes();
-  }();
   for (auto files = job.shot.pictures.begin(); files != job.shot.pictures.end() && tally.goes_on(); ++files) {
     messages.begin(files->input.path);
     try {
@@ -143,6 +139,7 @@ int dry_run(FilterJob job, Messages& messages) {
       tally.fail(files->input.path);
     }
   }
+  const std::size_t of_program = resident_bytes();  // with its libraries, and no picture any more
   // One picture is filtered while the next one is read and the last one is written.
   const std::size_t beside = job.shot.pictures.size() > 1 ? 2 * most.picture + most.images : 0;
   if (!job.shot.pictures.empty())
