@@ -224,7 +224,7 @@ int main(int argc, char** argv) {
   int code = 0;
   try {
     program::choose_cache();
-    if (const auto warning = program::cache_warning()) say("warning: " + *warning);
+    if (const auto warning = program::fill_cache()) say("warning: " + *warning);
     run(arguments);
     if (const auto problem = program::output_problem())
       throw Error(ErrorCode::output, "standard output", *problem, "all of it out");

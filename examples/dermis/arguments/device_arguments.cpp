@@ -17,7 +17,7 @@ namespace dermis::program {
 std::vector<DeviceInfo> devices_there_are() {
   // Measured with PoCL 3.1 on two cores: below 1050 MB its threads, or those of its compiler, may fail to start.
   exr::require_addresses("OpenCL", std::uint64_t{1200} << 20, std::uint64_t{24} << 20);
-  if (const auto warning = cache_warning()) print_warning(*warning);
+  if (const auto warning = fill_cache()) print_warning(*warning);
   std::vector<DeviceInfo> devices = Device::list();
   if (!devices.empty()) return devices;
   const auto problem = cache_problem();

@@ -66,6 +66,10 @@ void add_result_arguments(CLI::App& app, FilterArguments& arguments) {
                "half channels stay half, with 65504 for what is above; else the beauty becomes float");
   app.add_flag("--allow-empty", arguments.may_be_empty,
                "copy a picture in which nothing scatters; else that is an error");
+}
+
+void add_message_and_report_arguments(CLI::App& app, FilterArguments& arguments) {
+  const HelpGroup group(app, "Messages and reports");
   add_stats_arguments(app, arguments.output);
   app.add_option(
          "--report", arguments.report,
@@ -164,6 +168,7 @@ void add_filter_arguments(CLI::App& app, FilterArguments& arguments) {
   add_reading_groups(app, arguments.surface);
   add_light_arguments(app, arguments);
   add_result_arguments(app, arguments);
+  add_message_and_report_arguments(app, arguments);
   add_scatter_arguments(app, arguments);
   mark_settings(app);
 }

@@ -32,6 +32,7 @@ inline void add_memory_argument(CLI::App& app) {
          "take no more memory; beside it what the cgroup, ulimit -v and free memory allow")
       ->check(check, "")
       ->type_name("SIZE")
+      ->group("Device")
       ->configurable(false);
 }
 

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "arguments/device_arguments.hpp"
 #include "arguments/quality_arguments.hpp"
 #include "dermis/plan.hpp"
 #include "files/loaded_frame.hpp"
@@ -38,7 +39,7 @@ std::vector<UnseenWeight> find_unseen_weights(const exr::Picture& picture, const
   frame.mm_per_unit = mm_per_unit;
   frame.scattered = {.host = seen.data()};
   const Options options{.quality = default_quality, .sums_weights = true, .cache_folder = cache_folder};
-  Plan(Device::open(), program::materials_of(profiles), FrameDescription::of(frame), options).run(frame);
+  Plan(open_device({}), program::materials_of(profiles), FrameDescription::of(frame), options).run(frame);
 
   const std::vector<std::uint8_t> scatters = scattering_pixels(loaded, profiles);
   std::vector<UnseenWeight> all;

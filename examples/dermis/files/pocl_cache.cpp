@@ -154,12 +154,13 @@ void choose_cache() {
   }
   // A name that leads nowhere keeps PoCL from its own choice.
   if (!has_cache) ::setenv(variable, "/dev/null/none", 1);
-  if (has_cache && kept) kept->lay_out(cache);
 }
 
-std::optional<std::string> cache_warning() {
+std::optional<std::string> fill_cache() {
   if (!has_cache)
     throw Error(ErrorCode::device, variable, "nothing, and no home or temporary folder of this user alone", "a folder");
+  static bool is_filled = false;
+  if (kept && !std::exchange(is_filled, true)) kept->lay_out(cache);
   return std::exchange(warning, std::nullopt);
 }
 

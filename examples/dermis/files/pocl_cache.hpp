@@ -8,13 +8,13 @@
 namespace dermis::program {
 
 /// Names the folder in POCL_CACHE_DIR for all of the process: what is there if the user has set it; else a new folder
-/// of this run in the user's cache of dermis, or, if that is not to be had, in the system's temporary one, with the
-/// kernels in it that earlier runs have kept. Runs that have ended by a signal or a crash are cleaned up after. To be
-/// called before anything else calls OpenCL and before there are threads.
+/// of this run in the user's cache of dermis, or, if that is not to be had, in the system's temporary one. Runs that
+/// have ended by a signal or a crash are cleaned up after. To be called before there are threads.
 void choose_cache();
 
-/// What is wrong with the folder that was chosen, once. Throws Error(device) if there is none.
-std::optional<std::string> cache_warning();
+/// Puts the kernels that earlier runs have kept into the folder of this run, before anything calls OpenCL; at the first
+/// call alone. Returns what is wrong with the folder that was chosen, once. Throws Error(device) if there is none.
+std::optional<std::string> fill_cache();
 
 /// Keeps the kernels that PoCL has compiled for later runs, and removes the folder of this one. Nothing may call OpenCL
 /// any more.
