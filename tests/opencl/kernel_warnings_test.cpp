@@ -30,8 +30,8 @@ const std::set<std::string> all_flags = {"HAS_ALBEDO", "HAS_DEPTH",   "HAS_MASK"
 
 /// Other names that an #if asks for.
 const std::set<std::string> not_flags = {
-    "V",         "TERMS",      "TABLE_SHIFT",     "FLATNESS",          "LEAST_CENTRE_WEIGHT",
-    "SHEAR_RUN", "SHEAR_RUNS", "DERMIS_PARAMS_H", "INTERLEAVES_FLOATS"};
+    "V",          "TERMS",           "TABLE_SHIFT",        "FLATNESS",   "LEAST_CENTRE_WEIGHT", "SHEAR_RUN",
+    "SHEAR_RUNS", "DERMIS_PARAMS_H", "INTERLEAVES_FLOATS", "LOCAL_TAPS", "LOCAL_PIXELS",        "MATERIALS"};
 
 /// Kernel files that may stand in one program, their vector widths, and the flags that they only know one value of.
 /// Most of the time goes into the compiler's own headers: some files are together here that plans build apart.
@@ -47,7 +47,9 @@ const std::vector<Group> groups = {
     {{"frame/finish.cl", "separable/tile.cl"}, all_widths, {}},
     {{"frame/prepare.cl", "integral/exact.cl"}, all_widths, {}},
     {{"frame/entering_light.cl"}, all_widths, {{"HAS_DEPTH", 1}, {"HAS_NORMAL", 1}}},
-    {{"frame/prepare.cl", "separable/pixel.cl"}, {1}, {}},
+    {{"frame/prepare.cl", "separable/pixel.cl", "separable/passes.cl"}, {1}, {{"LOCAL_TAPS", 0}, {"LOCAL_PIXELS", 0}}},
+    {{"separable/passes.cl"}, {1}, {{"LOCAL_TAPS", 1}, {"LOCAL_PIXELS", 0}, {"JITTER", 0}}},
+    {{"separable/passes.cl"}, {1}, {{"LOCAL_TAPS", 1}, {"LOCAL_PIXELS", 1}, {"JITTER", 0}}},
     {{"frame/finish.cl", "integral/disc_texels.cl", "integral/disc.cl"}, {1}, {}},
     {{"classify/classify.cl", "classify/choose_passes.cl", "classify/fingerprint.cl"}, {BLOCK}, {}},
     {{"classify/classify_pixels.cl", "classify/choose_passes.cl"}, {1}, {}},
