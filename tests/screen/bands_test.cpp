@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <regex>
+#include <string>
 
 #include "dermis/dermis.hpp"
 #include "opencl/device.hpp"
