@@ -186,11 +186,12 @@ TEST_CASE("separable passes and discs join their light with hidden light by thei
   }
   const double by_own_weights = oracle::compare(all, joined(seen, weights, hidden), exact.touched).relative_l2;
   const double by_exact_weights = oracle::compare(all, joined(seen, exact.weights, hidden), exact.touched).relative_l2;
-  CHECK(oracle::compare(seen, all, exact.touched).relative_l2 > 0.01);
+  const double effect = oracle::compare(seen, all, exact.touched).relative_l2;
+  CHECK(effect > 0.01);
   CHECK(by_own_weights < 0.02);
-  // On bodies this small the passes are some percent off what they should find, of projected profiles most: up to 5 %
-  // in 60 cases, and 8 % once. With weights of another body the error would be of the size of all that is hidden.
-  CHECK(by_exact_weights < 0.2);
+  // What wrong weights misplace is a share of what is hidden: all of it where the passes would find everything. On
+  // bodies this small they find some percent too much or too little, which is up to a quarter of it in 82 cases.
+  CHECK(by_exact_weights < effect / 2);
 }
 
 namespace {

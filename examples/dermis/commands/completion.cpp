@@ -123,7 +123,7 @@ std::string fish(const std::vector<const CLI::App*>& commands) {
 Command add_completion(CLI::App& parent) {
   CLI::App* app = parent.add_subcommand("completion", "what bash, zsh or fish needs to complete command lines");
   const auto shell = std::make_shared<std::string>();
-  app->add_option("shell", *shell, "the shell; packages put its text where it finds it")
+  app->add_option("shell", *shell, "the shell that is to know; packages install the text for all three")
       ->required()
       ->check(one_of({"bash", "zsh", "fish"}))
       ->type_name("bash|zsh|fish");

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <memory>
 #include <string_view>
@@ -15,6 +16,7 @@
 #include "arguments/word_argument.hpp"
 #include "commands/commands.hpp"
 #include "dermis/error.hpp"
+#include "exr/message_text.hpp"
 #include "report/standard_output.hpp"
 
 namespace dermis::program {
@@ -62,7 +64,7 @@ void check_call(const std::vector<std::string>& words) {
     if (word.starts_with("--chunk") || word.starts_with("--threads"))
       throw Error(ErrorCode::usage, "command", word,
                   "neither --chunk nor --threads, as --chunks and --cores stand for them");
-    if (std::any_of(word.begin(), word.end(), [](unsigned char c) { return c < ' ' || c == 127; }))
+    if (exr::escaped(word) != word)
       throw Error(ErrorCode::usage, "command", word, "no control characters, which jobs cannot hold");
   }
   std::vector<std::string> all = with_config(*command->app, {words.begin() + 1, words.end()});
