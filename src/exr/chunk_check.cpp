@@ -59,7 +59,7 @@ class File {
 std::uint64_t size_of_rle(std::string_view packed) {
   std::uint64_t size = 0;
   while (!packed.empty()) {
-    const int count = static_cast<signed char>(packed[0]);
+    const auto count = static_cast<std::int8_t>(packed[0]);
     const std::size_t taken = count < 0 ? static_cast<std::size_t>(-count) : 1;
     if (packed.size() < 1 + taken) return 0;
     size += count < 0 ? taken : static_cast<std::size_t>(count) + 1;

@@ -15,7 +15,6 @@ namespace dermis::exr {
 namespace {
 
 constexpr std::uint32_t largest_tile_px = 8192;
-constexpr std::uint32_t half_type = 1;              // of a channel
 constexpr std::uint64_t smallest_chunk_bytes = 16;  // its place in the table (8), its row (4), its size (4)
 
 struct TypeSize {

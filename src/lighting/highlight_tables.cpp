@@ -13,7 +13,7 @@ namespace dermis {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 constexpr double widest = 6;  ///< of tan a / m: e^-36 of the normals of the distribution lie beyond
 
 double square(double x) { return x * x; }

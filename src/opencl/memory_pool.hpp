@@ -2,10 +2,10 @@
 #pragma once
 
 #include <algorithm>
+#include <list>
 #include <memory>
 #include <mutex>
 #include <utility>
-#include <vector>
 
 #include "opencl/device.hpp"
 
@@ -49,7 +49,7 @@ class MemoryPool {
   Lent take(const Device& device, const Sizes& sizes, const Suits& suits) {
     {
       const std::scoped_lock lock(mutex_);
-      std::erase_if(kept_, [&](const Lent& lent) { return !(lent.memory->sizes == sizes); });
+      kept_.remove_if([&](const Lent& lent) { return !(lent.memory->sizes == sizes); });
       const auto found = std::find_if(kept_.begin(), kept_.end(), suits);
       if (found != kept_.end()) {
         Lent lent = std::move(*found);
@@ -57,11 +57,13 @@ class MemoryPool {
         return lent;
       }
     }
-    return {std::make_unique<Memory>(device, sizes), {}};
+    Lent made;
+    made.memory = std::make_unique<Memory>(device, sizes);
+    return made;
   }
 
   std::mutex mutex_;
-  std::vector<Lent> kept_;
+  std::list<Lent> kept_;  // no element is assigned to: to give up an event's handle may fail
 };
 
 /// Takes memory from a pool, and puts it back when the queue is done with it.

@@ -9,7 +9,7 @@ namespace dermis {
 
 namespace {
 
-constexpr double two_pi = 2 * std::numbers::pi;
+using std::numbers::pi;
 
 /// z (1 + s d) e^(-s d) / d^3
 double flux_of(double z, double s, double d) { return z * (1 + s * d) * std::exp(-s * d) / (d * d * d); }
@@ -82,7 +82,7 @@ double DipoleCurve::disc(double r) const {
   if (outside < 0.5) return 1 - outside;
   double sum = flux_ * (flux_within(z_r_, s_, r) + flux_within(z_v_, s_, r));
   if (fluence_ > 0) sum += fluence_ * (fluence_within(z_r_, s_, r) - fluence_within(z_v_, s_, r));
-  return two_pi * sum;
+  return 2 * pi * sum;
 }
 
 double DipoleCurve::disc_tail(double r) const {
@@ -94,7 +94,7 @@ double DipoleCurve::disc_tail(double r) const {
     const double apart = (z_v_ - z_r_) * (z_v_ + z_r_);
     sum -= fluence_ / s_ * decay_r * std::expm1(-s_ * apart / (d_v + d_r));
   }
-  return two_pi * sum;
+  return 2 * pi * sum;
 }
 
 double DipoleCurve::spectrum(double omega) const {
@@ -102,7 +102,7 @@ double DipoleCurve::spectrum(double omega) const {
   const double real = std::exp(-z_r_ * q);
   double sum = flux_ * (real + std::exp(-z_v_ * q));
   if (fluence_ > 0) sum -= fluence_ / q * real * std::expm1(-(z_v_ - z_r_) * q);
-  return two_pi * sum;
+  return 2 * pi * sum;
 }
 
 }  // namespace dermis

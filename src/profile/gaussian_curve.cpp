@@ -9,7 +9,7 @@ namespace dermis {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 /// The normal distribution's light on from..to, in standard deviations.
 double normal_strip(double from, double to) {

@@ -22,7 +22,7 @@ namespace dermis {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 void require_share(double share) {
   if (!(share >= 0 && share < 1)) throw Error(ErrorCode::usage, "share", std::to_string(share), "0 <= share < 1");

@@ -11,7 +11,7 @@ namespace dermis {
 
 namespace {
 
-constexpr double two_pi = 2 * std::numbers::pi;
+using std::numbers::pi;
 
 /// A rectangle in the quadrant x, y >= 0.
 struct Quarter {
@@ -52,7 +52,7 @@ double along_side(const RadialCurve& curve, double h, double a, double b, const 
 /// A rectangle with a corner at the origin.
 double corner_light(const RadialCurve& curve, double width, double height) {
   const auto inside = [&](double r) { return curve.disc(r); };
-  return (along_side(curve, width, 0, height, inside) + along_side(curve, height, 0, width, inside)) / two_pi;
+  return (along_side(curve, width, 0, height, inside) + along_side(curve, height, 0, width, inside)) / (2 * pi);
 }
 
 /// A rectangle over which the curve is so smooth that its sides would cancel: by a product rule.
@@ -67,7 +67,7 @@ template <class Function>
 double sides_light(const RadialCurve& curve, const Quarter& q, const Function& f) {
   return (along_side(curve, q.x0, q.y0, q.y1, f) - along_side(curve, q.x1, q.y0, q.y1, f) +
           along_side(curve, q.y0, q.x0, q.x1, f) - along_side(curve, q.y1, q.x0, q.x1, f)) /
-         two_pi;
+         (2 * pi);
 }
 
 bool is_small(const RadialCurve& curve, const Quarter& q) {

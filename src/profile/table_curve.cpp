@@ -13,7 +13,7 @@ namespace dermis {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 /// t in r = x cosh t, for r close to x too.
 double line_angle(double r, double x) { return r > x ? 2 * std::asinh(std::sqrt((r - x) / (2 * x))) : 0; }

@@ -13,7 +13,7 @@ using dermis::TableRow;
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 double gaussian(double x, double deviation) {
   return std::exp(-x * x / (2 * deviation * deviation)) / (std::sqrt(2 * pi) * deviation);

@@ -9,8 +9,8 @@ namespace dermis::oracle {
 
 namespace {
 
-constexpr int fraction_bits = 12;
-constexpr double one = 1 << fraction_bits;
+constexpr int shear_bits = 12;
+constexpr double one = 1 << shear_bits;
 constexpr int full_damping = 1 << 13;  // The largest range there is, 2 columns per row, reduces a mean to 0.
 
 }  // namespace
@@ -85,7 +85,7 @@ BoundedShear damped_mean(std::span<const BoundedShear> shears) {
 }
 
 int side_px(int shear, int offset_px, int most_px) {
-  const int side = (shear * offset_px + (1 << (fraction_bits - 1))) >> fraction_bits;
+  const int side = (shear * offset_px + (1 << (shear_bits - 1))) >> shear_bits;
   return std::clamp(side, -most_px, most_px);
 }
 

@@ -14,7 +14,7 @@ namespace dermis::oracle {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 /// Returns P of dermis/shading.hpp, given the tangent of the angle between half vector and normal.
 double beckmann(const std::vector<SpecularLobe>& lobes, double tangent) {

@@ -7,7 +7,7 @@ namespace dermis {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 constexpr int image_px = 512;
 constexpr double lowest = 2 * pi / image_px;
 
