@@ -19,11 +19,11 @@ namespace {
 
 constexpr std::string_view config = "--config";
 
-/// Options of a call, not of a show.
-constexpr std::array of_a_call = {"file",     "--output",        "--in-place",  "--preview", "--tile-map",
-                                  "--frames", "--view-report",   "--stats",     "--quiet",   "--stats-json",
-                                  "--chunk",  "--keep-going",    "--cache-dir", "--threads", "--config",
-                                  "--device", "--skip-existing", "--dry-run",   "--report",  "--progress"};
+/// Options of a call or of a machine, not of a show.
+constexpr std::array of_a_call = {
+    "file",     "--output", "--in-place",      "--preview", "--tile-map",   "--frames",    "--view-report",
+    "--stats",  "--quiet",  "--stats-json",    "--chunk",   "--keep-going", "--cache-dir", "--threads",
+    "--config", "--device", "--skip-existing", "--dry-run", "--report",     "--progress",  "--device-memory"};
 
 /// The file that --config names; empty if it is not given.
 std::string file_of(const std::vector<std::string>& arguments) {
