@@ -151,7 +151,7 @@ params::FrameLayouts FrameRun::input_layouts() const {
   if (!memory_.sizes.has_curvature) return layouts;
   constexpr int bytes = sizeof(float);
   const int stride = size().stride();
-  layouts.light = {.offset = PADDING * bytes,
+  layouts.light = {.offset = params::Bytes{PADDING} * bytes,
                    .row_stride = static_cast<params::Bytes>(3 * bytes) * stride,
                    .pixel_stride = bytes,
                    .channel_stride = stride * bytes,

@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -76,7 +77,7 @@ void add(TileMap& sum, const TileMap& its, int own_rows) {
   sum.tile_height = BLOCK;
   sum.columns = its.columns;
   for (int y = 0; y < own_rows; y += BLOCK) {
-    const auto row = its.kinds.begin() + y / its.tile_height * its.columns;
+    const auto row = its.kinds.begin() + std::ptrdiff_t{y / its.tile_height} * its.columns;
     sum.kinds.insert(sum.kinds.end(), row, row + its.columns);
     ++sum.rows;
   }
