@@ -70,6 +70,7 @@ cl::Device find_device(const std::string& name) {
   }
   if (name.empty()) {
     std::vector<DeviceInfo> infos;
+    infos.reserve(devices.size());
     for (const cl::Device& device : devices) infos.push_back(describe(device));
     return devices[preferred_device(infos)];
   }

@@ -51,8 +51,8 @@ BorrowedBuffer::BorrowedBuffer(const Device& device, std::string_view name, std:
 }
 
 BorrowedBuffer::~BorrowedBuffer() {
-  if (buffer_() == nullptr) return;     // moved from
-  constexpr std::size_t most = 2 * 10;  // the images of two frames
+  if (buffer_() == nullptr) return;  // moved from
+  constexpr std::size_t most = 20;   // the images of two frames
   const std::scoped_lock lock(cache_.copies_mutex);
   cache_.copies.push_back(std::move(buffer_));
   if (cache_.copies.size() > most) cache_.copies.erase(cache_.copies.begin());

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <initializer_list>
 #include <string>
+#include <utility>
 
 #include "opencl/device_buffer.hpp"
 
@@ -17,15 +19,19 @@ struct Extent {
   std::ptrdiff_t end;
 };
 
-Extent extent_of(const CallerImage& image, int width, int height) {
-  const Layout& layout = image.layout;
-  Extent extent{static_cast<std::ptrdiff_t>(layout.offset), static_cast<std::ptrdiff_t>(layout.offset)};
-  for (const std::ptrdiff_t step : {layout.channel_stride * (image.channels - 1), layout.pixel_stride * (width - 1),
-                                    layout.row_stride * (height - 1)}) {
-    (step < 0 ? extent.begin : extent.end) += step;
-  }
-  extent.end += static_cast<std::ptrdiff_t>(bytes_of(layout.format));
+/// Of values of so many bytes from an offset on, `steps` to the last of each axis.
+Extent extent_of(std::ptrdiff_t offset, std::initializer_list<std::ptrdiff_t> steps, std::ptrdiff_t bytes) {
+  Extent extent{offset, offset + bytes};
+  for (const std::ptrdiff_t step : steps) (step < 0 ? extent.begin : extent.end) += step;
   return extent;
+}
+
+Extent extent_of(const CallerImage& image, int width, int height) {
+  const Layout& its = image.layout;
+  return extent_of(
+      static_cast<std::ptrdiff_t>(its.offset),
+      {its.channel_stride * (image.channels - 1), its.pixel_stride * (width - 1), its.row_stride * (height - 1)},
+      static_cast<std::ptrdiff_t>(bytes_of(its.format)));
 }
 
 HostRange host_range_of(const CallerImage& image, int width, int height) {
@@ -36,6 +42,30 @@ HostRange host_range_of(const CallerImage& image, int width, int height) {
 
 std::ptrdiff_t bytes_of_format(const params::ImageParams& image) {
   return static_cast<std::ptrdiff_t>(bytes_of(static_cast<Format>(image.format)));
+}
+
+/// Different buffers of a caller may be parts of the same one.
+cl_mem whole_of(const cl::Buffer& buffer) {
+  cl_mem parent = nullptr;
+  constexpr std::size_t handle_bytes = sizeof(cl_mem);  // NOLINT(bugprone-sizeof-expression)
+  const cl_int error = clGetMemObjectInfo(buffer(), CL_MEM_ASSOCIATED_MEMOBJECT, handle_bytes, &parent, nullptr);
+  if (error != CL_SUCCESS) throw cl::Error(error, "clGetMemObjectInfo");
+  return parent != nullptr ? parent : buffer();
+}
+
+/// Whether channels of one interleaved picture meet within a pixel, or with those of the pixels beside it.
+bool channels_meet(const params::ImageParams& p, int channels_of_p, const params::ImageParams& q, int channels_of_q) {
+  const std::ptrdiff_t stride = std::abs(p.pixel_stride);
+  for (std::ptrdiff_t i = 0; i < channels_of_p; ++i) {
+    for (std::ptrdiff_t j = 0; j < channels_of_q; ++j) {
+      const std::ptrdiff_t apart = (q.offset + j * q.channel_stride) - (p.offset + i * p.channel_stride);
+      for (const std::ptrdiff_t shift : {-stride, std::ptrdiff_t{0}, stride}) {
+        const std::ptrdiff_t from = apart + shift;
+        if (from < bytes_of_format(p) && -from < bytes_of_format(q)) return true;
+      }
+    }
+  }
+  return false;
 }
 
 bool layout_exceeds(const Layout& layout, std::ptrdiff_t farthest) {
@@ -124,9 +154,9 @@ std::vector<HostRange> host_ranges_of(std::span<const CallerImage> images, int w
   return joined;
 }
 
-ImageBuffers::ImageBuffers(const Device& device, const cl::CommandQueue& queue, int width, int height,
+ImageBuffers::ImageBuffers(const Device& device, cl::CommandQueue queue, int width, int height,
                            std::span<const CallerImage> images)
-    : queue_(queue),
+    : queue_(std::move(queue)),
       width_(width),
       height_(height),
       host_ranges_(host_ranges_of(images, width, height)),
@@ -186,42 +216,19 @@ bool ImageBuffers::same_place(std::size_t a, std::size_t b) const {
 
 bool ImageBuffers::overlap(std::size_t a, std::size_t b) const {
   if (buffers_[a]() == nullptr || buffers_[b]() == nullptr) return false;
-  if (buffers_[a]() != buffers_[b]()) {
-    // Different buffers of a caller may be parts of the same one.
-    const auto whole = [&](std::size_t i) {
-      cl_mem parent = nullptr;
-      const cl_int error =
-          clGetMemObjectInfo(buffers_[i](), CL_MEM_ASSOCIATED_MEMOBJECT, sizeof(parent), &parent, nullptr);
-      if (error != CL_SUCCESS) throw cl::Error(error, "clGetMemObjectInfo");
-      return parent != nullptr ? parent : buffers_[i]();
-    };
-    return whole(a) == whole(b);
-  }
+  if (buffers_[a]() != buffers_[b]()) return whole_of(buffers_[a]) == whole_of(buffers_[b]);
   const params::ImageParams& p = layouts_[a];
   const params::ImageParams& q = layouts_[b];
-  // Channels of one interleaved picture: do they meet within a pixel, or with those of the pixels beside it?
-  const std::ptrdiff_t stride = std::abs(p.pixel_stride);
-  if (p.row_stride == q.row_stride && p.pixel_stride == q.pixel_stride && std::abs(p.offset - q.offset) < stride) {
-    for (int i = 0; i < channels_[a]; ++i) {
-      for (int j = 0; j < channels_[b]; ++j) {
-        const std::ptrdiff_t apart = (q.offset + j * q.channel_stride) - (p.offset + i * p.channel_stride);
-        for (const std::ptrdiff_t shift : {-stride, std::ptrdiff_t{0}, stride}) {
-          const std::ptrdiff_t from = apart + shift;
-          if (from < bytes_of_format(p) && -from < bytes_of_format(q)) return true;
-        }
-      }
-    }
-    return false;
+  if (p.row_stride == q.row_stride && p.pixel_stride == q.pixel_stride &&
+      std::abs(p.offset - q.offset) < std::abs(p.pixel_stride)) {
+    return channels_meet(p, channels_[a], q, channels_[b]);
   }
   const auto extent = [&](const params::ImageParams& image, int channels) {
-    Extent e{image.offset, image.offset};
-    for (const std::ptrdiff_t step : {static_cast<std::ptrdiff_t>(image.channel_stride) * (channels - 1),
-                                      static_cast<std::ptrdiff_t>(image.pixel_stride) * (width_ - 1),
-                                      static_cast<std::ptrdiff_t>(image.row_stride) * (height_ - 1)}) {
-      (step < 0 ? e.begin : e.end) += step;
-    }
-    e.end += bytes_of_format(image);
-    return e;
+    return extent_of(
+        image.offset,
+        {std::ptrdiff_t{image.channel_stride} * (channels - 1), std::ptrdiff_t{image.pixel_stride} * (width_ - 1),
+         static_cast<std::ptrdiff_t>(image.row_stride) * (height_ - 1)},
+        bytes_of_format(image));
   };
   const Extent x = extent(p, channels_[a]);
   const Extent y = extent(q, channels_[b]);

@@ -63,7 +63,7 @@ class ImageBuffers {
  public:
   /// Puts the copying on the queue, which runs in order if images are in host memory; they outlive it. Throws
   /// Error(device) that names the image for which the device has no room.
-  ImageBuffers(const Device& device, const cl::CommandQueue& queue, int width, int height,
+  ImageBuffers(const Device& device, cl::CommandQueue queue, int width, int height,
                std::span<const CallerImage> images);
   ~ImageBuffers();
   ImageBuffers(const ImageBuffers&) = delete;

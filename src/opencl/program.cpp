@@ -42,7 +42,7 @@ std::string telling_line(const std::string& log) {
 /// What a build has failed of: its log tells it, if the driver has one.
 std::string problem_of(const cl::Program& program, const cl::Device& device, cl_int error) {
   try {
-    const std::string line = telling_line(program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device));
+    std::string line = telling_line(program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device));
     if (!line.empty()) return line;
   } catch (const cl::Error&) {
     // The error of the build says more than that of asking for its log.

@@ -1,5 +1,6 @@
 #include "dermis/profile_text.hpp"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -55,9 +56,7 @@ std::optional<double> parse_named(std::string_view text, std::string_view prefix
 bool all_above_zero(const Rgb& rgb) { return rgb[0] > 0 && rgb[1] > 0 && rgb[2] > 0; }
 
 bool all_0_to_1(const Rgb& rgb) {
-  for (const double value : rgb)
-    if (value < 0 || value > 1) return false;
-  return true;
+  return std::ranges::all_of(rgb, [](double value) { return value >= 0 && value <= 1; });
 }
 
 /// albedo=R/G/B

@@ -1,6 +1,8 @@
 // Taps for one size of pixel, as callers see them: make_tap_set.
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <iterator>
 #include <optional>
 #include <utility>
 
@@ -53,7 +55,7 @@ TapSet make_tap_set(const Profile& profile, const TapsDesign& design, double pix
   const auto [sized, predicted_rel_l2] = fewest_taps(designed, design, pixel_mm, fetch);
   const std::vector<double>& side = sized.placed.offsets_px;
   TapSet result{pixel_mm, fetch, {}, {}, predicted_rel_l2};
-  for (auto offset = side.rbegin(); offset != side.rend(); ++offset) result.offsets_px.push_back(-*offset);
+  std::transform(side.rbegin(), side.rend(), std::back_inserter(result.offsets_px), std::negate<>());
   result.offsets_px.push_back(0);
   result.offsets_px.insert(result.offsets_px.end(), side.begin(), side.end());
   for (std::size_t t = 0; t < designed.model().size(); ++t) {

@@ -86,7 +86,8 @@ class Pass {
   std::vector<PixelOffset> sheared(int x, int y, int offset_px, const Choice& choice) const;
   struct Reading;
   Reading read(int x, int y, const TapWeights& weights, std::size_t pair, PixelOffset offset) const;
-  void add_tap(std::span<const Reading> readings, const TapWeights& weights);
+  void add_tap(int x, int y, const TapWeights& weights, std::size_t pair, const std::vector<PixelOffset>& offsets);
+  void add_channel(std::span<const Reading> readings, const TapWeights& weights, std::size_t term, int channel);
   Outcome finished(const Outcome& values, std::span<const Term> terms) const;
 
   Axis axis_;
@@ -171,18 +172,14 @@ Outcome Pass::with_taps(int x, int y, const Choice& choice) {
   for (std::size_t pair = 0; pair < level.offsets_px.size(); ++pair) {
     for (const int side : {1, -1}) {
       const int offset_px = side * level.offsets_px[pair];
-      std::vector<PixelOffset> offsets;
       if (static_cast<int>(pair) < choice.rotated) {
         const auto [dx, dy] = turned.offset(level.offsets_px[pair]);
-        offsets = {{side * dx, side * dy}};
+        add_tap(x, y, weights, pair, {{side * dx, side * dy}});
       } else if (axis_ == horizontal) {
-        offsets = {{offset_px, 0}};
+        add_tap(x, y, weights, pair, {{offset_px, 0}});
       } else {
-        offsets = sheared(x, y, offset_px, choice);
+        add_tap(x, y, weights, pair, sheared(x, y, offset_px, choice));
       }
-      std::vector<Reading> readings;
-      for (const PixelOffset offset : offsets) readings.push_back(read(x, y, weights, pair, offset));
-      add_tap(readings, weights);
     }
   }
   BoundedRgb limit{exact(1), exact(1), exact(1)};  // of the weights of differences, on a curved surface
@@ -236,25 +233,30 @@ Pass::Reading Pass::read(int x, int y, const TapWeights& weights, std::size_t pa
 }
 
 /// Adds one tap, which may have fallen on any of these pixels, to the sums of every term.
-void Pass::add_tap(std::span<const Reading> readings, const TapWeights& weights) {
+void Pass::add_tap(int x, int y, const TapWeights& weights, std::size_t pair, const std::vector<PixelOffset>& offsets) {
+  std::vector<Reading> readings;
+  readings.reserve(offsets.size());
+  for (const PixelOffset offset : offsets) readings.push_back(read(x, y, weights, pair, offset));
   for (std::size_t t = 0; t < sums_.size(); ++t) {
-    for (int c = 0; c < 3; ++c) {
-      Bounded weight;
-      double least_weight = std::numeric_limits<double>::infinity();
-      Bounded light;
-      bool has_light = false;
-      for (const Reading& reading : readings) {
-        const Bounded here = reading.is_there ? weights.tap(reading.place, t, c) : exact(0);
-        weight = &reading == &readings.front() ? here : including(weight, here);
-        least_weight = std::min(least_weight, here.low());
-        if (!reading.is_there) continue;
-        const Bounded light_here = inputs_[t].at(reading.x, reading.y, c);
-        light = has_light ? including(light, light_here) : light_here;
-        has_light = true;
-      }
-      if (has_light && !is_exactly(weight, 0)) sums_[t][c].add(weight, light, least_weight);
-    }
+    for (int c = 0; c < 3; ++c) add_channel(readings, weights, t, c);
   }
+}
+
+void Pass::add_channel(std::span<const Reading> readings, const TapWeights& weights, std::size_t term, int channel) {
+  Bounded weight;
+  double least_weight = std::numeric_limits<double>::infinity();
+  Bounded light;
+  bool has_light = false;
+  for (const Reading& reading : readings) {
+    const Bounded here = reading.is_there ? weights.tap(reading.place, term, channel) : exact(0);
+    weight = &reading == &readings.front() ? here : including(weight, here);
+    least_weight = std::min(least_weight, here.low());
+    if (!reading.is_there) continue;
+    const Bounded light_here = inputs_[term].at(reading.x, reading.y, channel);
+    light = has_light ? including(light, light_here) : light_here;
+    has_light = true;
+  }
+  if (has_light && !is_exactly(weight, 0)) sums_[term][channel].add(weight, light, least_weight);
 }
 
 Outcome Pass::finished(const Outcome& values, std::span<const Term> terms) const {
