@@ -23,7 +23,7 @@ double apart(double balance) {
 }  // namespace
 
 PoleSpectrum::Pair PoleSpectrum::pair(const VectorXd& parameters, int number) const {
-  const auto at = parameters.segment(4 * number, number + 1 < Recursion::pairs ? 4 : 3);
+  const auto at = parameters.segment(Eigen::Index{4} * number, number + 1 < Recursion::pairs ? 4 : 3);
   double share = integral_;
   if (number + 1 < Recursion::pairs) {
     share = at[3];

@@ -50,6 +50,8 @@ class HostValues {
   CallerImage from_;
 };
 
+bool is_finite(const Point& p) { return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]); }
+
 }  // namespace
 
 StretchMaps stretch_of_positions(int width, int height, const Image& position, const Image& mask, double mm_per_unit) {
@@ -65,10 +67,7 @@ StretchMaps stretch_of_positions(int width, int height, const Image& position, c
   };
   const auto is_object = [&](int x, int y) {
     if (x < 0 || y < 0 || x >= width || y >= height) return false;
-    for (const double value : point(x, y)) {
-      if (!std::isfinite(value)) return false;
-    }
-    return !mask || masks.at(x, y, 0) > 0;
+    return is_finite(point(x, y)) && (!mask || masks.at(x, y, 0) > 0);
   };
   constexpr double least_mm = 1e-9;  // points that coincide are still of an object
   const auto stretch_along = [&](int x, int y, int dx, int dy) {

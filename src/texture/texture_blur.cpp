@@ -89,7 +89,7 @@ struct Runs {
 };
 
 /// BlurTables on the device, for texels of so many mm.
-struct UploadedTables {
+struct UploadedTables {      // NOLINT(bugprone-exception-escape): to give up a buffer's handle may fail
   double mm_per_texel = -1;  ///< of none yet
   std::vector<cl::Buffer> levels;
   cl::Buffer weights;

@@ -23,6 +23,21 @@ void set_decay(float (&decay)[3][STATES], int lane, const PolePair& pair, double
   decay[2][lane] = static_cast<float>(-decayed(pair.rate_per_mm[0]) * std::sin(angle));
 }
 
+/// Sets the poles of a lane. `sign` is that of its result.
+void set_pair(params::PoleParams& table, int lane, const PolePair& pair, double sign, double mm_per_texel) {
+  // The result of a complex pair is the real part of its share times p + i q.
+  const double other_sign = pair.turn_per_mm > 0 ? -sign : sign;
+  table.rate[lane] = static_cast<float>(pair.rate_per_mm[0]);
+  table.other_rate[lane] = static_cast<float>(pair.rate_per_mm[1]);
+  table.turn[lane] = static_cast<float>(pair.turn_per_mm);
+  table.share[lane] = static_cast<float>(sign * pair.share[0]);
+  table.other_share[lane] = static_cast<float>(other_sign * pair.share[1]);
+  if (mm_per_texel > 0) {
+    set_decay(table.half_texel, lane, pair, mm_per_texel, 0.5);
+    set_decay(table.texel, lane, pair, mm_per_texel, 1);
+  }
+}
+
 /// The poles of the pass along u, then of that along v. `mm_per_texel`: of all texels, or 0 if they differ and the
 /// device makes the decays.
 std::array<params::PoleParams, 2> make_pole_tables(const Recursion& recursion, double mm_per_texel) {
@@ -34,20 +49,9 @@ std::array<params::PoleParams, 2> make_pole_tables(const Recursion& recursion, d
     for (int k = 0; k < Recursion::pairs; ++k) {
       for (int function = 0; function < 2; ++function) {
         for (int c = 0; c < 3; ++c) {
-          const int lane = 8 * k + 4 * function + c;
           const PolePair& pair = (function == 0 ? recursion.main : recursion.correction)[c][k];
           const double sign = pass == 1 && function == 1 ? recursion.sign[c] : 1;
-          // The result of a complex pair is the real part of its share times p + i q.
-          const double other_sign = pair.turn_per_mm > 0 ? -sign : sign;
-          table.rate[lane] = static_cast<float>(pair.rate_per_mm[0]);
-          table.other_rate[lane] = static_cast<float>(pair.rate_per_mm[1]);
-          table.turn[lane] = static_cast<float>(pair.turn_per_mm);
-          table.share[lane] = static_cast<float>(sign * pair.share[0]);
-          table.other_share[lane] = static_cast<float>(other_sign * pair.share[1]);
-          if (mm_per_texel > 0) {
-            set_decay(table.half_texel, lane, pair, mm_per_texel, 0.5);
-            set_decay(table.texel, lane, pair, mm_per_texel, 1);
-          }
+          set_pair(table, 8 * k + 4 * function + c, pair, sign, mm_per_texel);
         }
       }
     }

@@ -38,7 +38,7 @@ std::size_t TextureSizes::blocks() const { return static_cast<std::size_t>(block
 TexturePlanes::TexturePlanes(const Device& device, const TextureSizes& sizes, int light_floats_per_texel, int lit_parts)
     : light(device_buffer(device, "light", light_floats_per_texel * sizes.texels() * sizeof(float))),
       objects(device_buffer(device, "objects", sizes.texels())),
-      lit(device_buffer(device, "lit blocks", 3 * lit_parts * sizes.blocks())),
+      lit(device_buffer(device, "lit blocks", 3 * sizes.blocks() * lit_parts)),
       finest(device_buffer(device, "finest stretches", 2 * sizes.blocks() * sizeof(float))),
       counters(device_buffer(device, "counters", TEXTURE_COUNTERS * sizeof(cl_int))) {}
 

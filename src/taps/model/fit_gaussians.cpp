@@ -21,6 +21,7 @@ struct SpectrumResiduals {
   using InputType = VectorXd;
   using ValueType = VectorXd;
   using JacobianType = MatrixXd;
+  // NOLINTNEXTLINE(readability-identifier-naming): the names that Eigen asks for
   enum { InputsAtCompileTime = Eigen::Dynamic, ValuesAtCompileTime = Eigen::Dynamic };
 
   VectorXd omega_per_mm;
@@ -71,7 +72,7 @@ struct Fitted {
 /// The fit that starts from variances spread evenly, in their logarithm, over the given range.
 Fitted fit_from(const SpectrumResiduals& residuals, double log_low, double log_high) {
   const int count = residuals.count;
-  VectorXd x = VectorXd::Zero(2 * count);
+  VectorXd x = VectorXd::Zero(Eigen::Index{2} * count);
   for (int k = 0; k < count; ++k) x[k] = log_low + (log_high - log_low) * (k + 0.5) / count;
   SpectrumResiduals functor = residuals;
   Eigen::LevenbergMarquardt<SpectrumResiduals> solver(functor);

@@ -19,6 +19,7 @@ struct Residuals {
   using InputType = VectorXd;
   using ValueType = VectorXd;
   using JacobianType = MatrixXd;
+  // NOLINTNEXTLINE(readability-identifier-naming): the names that Eigen asks for
   enum { InputsAtCompileTime = Eigen::Dynamic, ValuesAtCompileTime = Eigen::Dynamic };
 
   const ProductFit& fit;

@@ -94,7 +94,7 @@ class QuadraticForm {
   void begin(const Equations& its) const;
   /// Takes an unknown out of the equations in factor_ and x_, as 0.
   void hold(int row) const;
-  double product(const Moments& moments, double offset_a, double offset_b) const;
+  static double product(const Moments& moments, double offset_a, double offset_b);
   double target(int term, double offset_px) const;
 
   int terms_;
@@ -142,7 +142,7 @@ double QuadraticForm::target(int term, double offset_px) const {
   return sum;
 }
 
-double QuadraticForm::product(const Moments& moments, double offset_a, double offset_b) const {
+double QuadraticForm::product(const Moments& moments, double offset_a, double offset_b) {
   const auto of_pixels = [&](int k, int l) {
     return 2 * (moments[k + l] + moments[std::abs(k - l)]) - 4 * (moments[k] + moments[l] - moments[0]);
   };
@@ -178,10 +178,15 @@ void factorise(MatrixXd& matrix) {
     }
     if (end == size) break;
     const double* const a = matrix.col(first).data();
-    const double *const b = a + size, *const c = b + size, *const d = c + size;
+    const double* const b = a + size;
+    const double* const c = b + size;
+    const double* const d = c + size;
     for (Index j = end; j < size; ++j) {
       double* const later = matrix.col(j).data();
-      const double by_a = a[j], by_b = b[j], by_c = c[j], by_d = d[j];
+      const double by_a = a[j];
+      const double by_b = b[j];
+      const double by_c = c[j];
+      const double by_d = d[j];
       for (Index row = j; row < size; ++row) {
         later[row] -= by_a * a[row] + by_b * b[row] + by_c * c[row] + by_d * d[row];
       }
@@ -415,6 +420,24 @@ std::vector<std::vector<double>> starts(const Forms& forms, const std::vector<do
   return result;
 }
 
+/// The weights of the centre and of a tap of each pair, a column a term, that have these sums.
+MatrixXd solved_weights(const QuadraticForm& form, const std::vector<double>& offsets_px,
+                        const std::vector<bool>& non_negative, const VectorXd& sums) {
+  MatrixXd pairs;
+  form.solve(offsets_px, non_negative, &pairs);
+  MatrixXd all(pairs.rows() + 1, pairs.cols());
+  all.bottomRows(pairs.rows()) = pairs;
+  all.row(0) = sums.transpose() - 2 * pairs.colwise().sum();
+  for (Index t = 0; t < all.cols(); ++t) {
+    // The pairs are not negative, but may leave less than nothing for the centre.
+    const double least_centre = 1e-5 * sums[t];
+    if (!non_negative[static_cast<std::size_t>(t)] || all(0, t) >= least_centre) continue;
+    all.col(t) *= (sums[t] - least_centre) / (sums[t] - all(0, t));
+    all(0, t) = least_centre;
+  }
+  return all;
+}
+
 }  // namespace
 
 Responses responses_of(const PlacedTaps& taps, int channel, const PowerGrid& grid) {
@@ -447,18 +470,7 @@ PlacedTaps fit_taps(const std::array<ChannelOnPixels, 3>& channels, std::vector<
   };
   const auto weigh = [&](const Forms& its_forms, double share_of_new) {
     for (int c = 0; c < 3; ++c) {
-      MatrixXd pairs;
-      its_forms[c].solve(taps.offsets_px, non_negative, &pairs);
-      MatrixXd all(pairs.rows() + 1, pairs.cols());
-      all.bottomRows(pairs.rows()) = pairs;
-      all.row(0) = sums[c].transpose() - 2 * pairs.colwise().sum();
-      for (Index t = 0; t < all.cols(); ++t) {
-        // The pairs are not negative, but may leave less than nothing for the centre.
-        const double least_centre = 1e-5 * sums[c][t];
-        if (!non_negative[static_cast<std::size_t>(t)] || all(0, t) >= least_centre) continue;
-        all.col(t) *= (sums[c][t] - least_centre) / (sums[c][t] - all(0, t));
-        all(0, t) = least_centre;
-      }
+      const MatrixXd all = solved_weights(its_forms[c], taps.offsets_px, non_negative, sums[c]);
       taps.weights[c] = share_of_new == 1 ? all : MatrixXd(share_of_new * all + (1 - share_of_new) * taps.weights[c]);
       beta[c] = responses_of(taps, c, channels[c].grid());
     }

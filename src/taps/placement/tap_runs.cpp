@@ -53,6 +53,7 @@ TapRuns nearest_to_powers(int last_px, int pairs, double power) {
   const int runs = std::min(pairs, last_px);
   const auto offset_px = [&](int n) { return last_px * std::pow(static_cast<double>(n) / runs, power); };
   std::vector<double> boundaries_px;
+  boundaries_px.reserve(static_cast<std::size_t>(runs) + 1);
   for (int n = 0; n < runs; ++n) boundaries_px.push_back((offset_px(n) + offset_px(n + 1)) / 2);
   boundaries_px.push_back(last_px + 0.5);
   return between(boundaries_px, last_px);

@@ -78,7 +78,8 @@ void LatticeWaves::add_evenly_spaced_images(double sigma_px, Column response) co
   constexpr int lanes = 4;
   const auto wanted = std::min(static_cast<Eigen::Index>(std::sqrt(2 * largest_exponent) / step) + 1, period + count);
   Eigen::VectorXd gaussian(wanted + lanes);
-  Eigen::Array4d value, ratio;
+  Eigen::Array4d value;
+  Eigen::Array4d ratio;
   for (int lane = 0; lane < lanes; ++lane) {
     value[lane] = std::exp(-step * step / 2 * lane * lane);
     ratio[lane] = std::exp(-step * step * lanes * (lane + lanes / 2.0));
