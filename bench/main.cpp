@@ -10,9 +10,9 @@
 #include "files/output_file.hpp"
 #include "files/pocl_cache.hpp"
 #include "measure/measurement.hpp"
-#include "measure/other_build.hpp"
 #include "measure/registry.hpp"
 #include "measure/start_up.hpp"
+#include "measure/two_builds.hpp"
 #include "paper/paper.hpp"
 #include "report/plots.hpp"
 #include "report/progress_bar.hpp"
@@ -77,12 +77,12 @@ bench::Setup setup_of(const Arguments& arguments) {
 }
 
 /// What the other build has to know to have the same cases.
-std::vector<std::string> arguments_of_other(const Arguments& arguments) {
-  std::vector<std::string> others = {"--device", arguments.device, "--threads", std::to_string(arguments.threads)};
-  if (arguments.picture.empty()) return others;
-  others.insert(others.end(), {arguments.picture, "--mm-per-unit", fmt::format("{}", arguments.mm_per_unit)});
-  for (const std::string& material : arguments.materials) others.insert(others.end(), {"--material", material});
-  return others;
+std::vector<std::string> arguments_of_builds(const Arguments& arguments) {
+  std::vector<std::string> result = {"--device", arguments.device, "--threads", std::to_string(arguments.threads)};
+  if (arguments.picture.empty()) return result;
+  result.insert(result.end(), {arguments.picture, "--mm-per-unit", fmt::format("{}", arguments.mm_per_unit)});
+  for (const std::string& material : arguments.materials) result.insert(result.end(), {"--material", material});
+  return result;
 }
 
 /// The cases on a picture are of its size.
@@ -132,10 +132,10 @@ void measure(const Arguments& arguments) {
   if (!arguments.json.empty()) program::check_writable("--json", arguments.json);
   if (!arguments.csv.empty()) program::check_writable("--csv", arguments.csv);
   if (!arguments.plot.empty()) bench::prepare_plots(arguments.plot);
-  std::optional<bench::OtherBuild> other;
-  if (is_against) other.emplace(arguments.against, arguments_of_other(arguments));
+  std::optional<bench::TwoBuilds> builds;
+  if (is_against) builds.emplace(arguments.against, arguments_of_builds(arguments));
   bench::Setup setup = setup_of(arguments);
-  if (is_against) setup.other = &*other;
+  if (is_against) setup.builds = &*builds;
   if (is_picture && !is_against) cases.insert(cases.begin(), bench::picture_reference());
   cases = on(setup.picture, std::move(cases));
   bench::Measurement measurement;

@@ -7,9 +7,9 @@
 #include <random>
 
 #include "measure/frame_copy.hpp"
-#include "measure/other_build.hpp"
 #include "measure/runner.hpp"
 #include "measure/start_up.hpp"
+#include "measure/two_builds.hpp"
 #include "opponents/opponents.hpp"
 #include "report/stopwatch.hpp"
 #include "support/machine.hpp"
@@ -77,19 +77,21 @@ struct Copies {
   }
 };
 
-/// One run here and one of the other build, if there is one that knows the case, in either order.
-void run_both(Runner& runner, OtherBuild* other, bool other_is_first) {
-  const auto run_other = [&] {
-    const std::optional<double> ms = other != nullptr ? other->run_ms(runner.row.what.name()) : std::nullopt;
-    if (ms) runner.other_ms.push_back(*ms);
-  };
-  if (other_is_first) run_other();
-  runner.run();
-  if (!other_is_first) run_other();
+void run_in(AnsweringProcess& build, const std::string& name, std::vector<double>& ms) {
+  if (const std::optional<double> answer = build.run_ms(name)) ms.push_back(*answer);
 }
 
-void warm_up(Runner& runner, OtherBuild* other) {
-  run_both(runner, other, false);
+/// One run here; or one of each build, if it knows the case, in either order.
+void run_once(Runner& runner, TwoBuilds* builds, bool other_is_first) {
+  if (builds == nullptr) return runner.run();
+  const std::string name = runner.row.what.name();
+  if (other_is_first) run_in(builds->other, name, runner.other_ms);
+  run_in(builds->own, name, runner.ms);
+  if (!other_is_first) run_in(builds->other, name, runner.other_ms);
+}
+
+void warm_up(Runner& runner, TwoBuilds* builds) {
+  run_once(runner, builds, false);
   runner.ms.clear();
   runner.stages_ms.clear();
   runner.other_ms.clear();
@@ -101,7 +103,7 @@ void go_round(std::vector<Runner*> runners, Copies& copies, const Setup& setup, 
   const std::size_t all = runners.size();
   copies.run();
   for (Runner* runner : runners) {
-    if (runner->row.first_run_ms < setup.enough_ms) warm_up(*runner, setup.other);
+    if (runner->row.first_run_ms < setup.enough_ms) warm_up(*runner, setup.builds);
   }
   copies.ms.clear();
   while (!runners.empty()) {
@@ -111,7 +113,7 @@ void go_round(std::vector<Runner*> runners, Copies& copies, const Setup& setup, 
     for (std::size_t i = 0; i < runners.size(); ++i) {
       // A machine's speed changes within a round, so the copy runs several times in each.
       if (i % 8 == 0) copies.run();
-      run_both(*runners[i], setup.other, random() % 2 == 0);
+      run_once(*runners[i], setup.builds, random() % 2 == 0);
     }
     std::erase_if(runners, [&](const Runner* runner) { return is_done(*runner, setup); });
   }
@@ -157,7 +159,7 @@ Measurement measure_cases(const std::vector<Case>& cases, const Setup& setup, co
     const bool is_start_up = what.family == Family::start_up;
     Runner& runner = runners.emplace_back(is_start_up ? start_up(what, setup.device) : prepare(what, stage));
     if (is_start_up) continue;
-    if (setup.other == nullptr) measure_error(runner, stage);
+    if (setup.builds == nullptr) measure_error(runner, stage);
     if (is_picture_truth(what)) {
       runner.ms = {runner.row.first_run_ms};  // one run takes minutes
     } else {
@@ -175,7 +177,7 @@ Measurement measure_cases(const std::vector<Case>& cases, const Setup& setup, co
     found.rows.push_back(std::move(runner.row));
   }
   if (setup.picture) found.picture = setup.picture->name;
-  if (setup.picture && setup.other == nullptr) {
+  if (setup.picture && setup.builds == nullptr) {
     for (const Part& part : stage.truth(setup.picture->spec).parts)
       found.parts.push_back({part.name, part.places.size()});
   }

@@ -13,7 +13,7 @@
 
 namespace dermis::bench {
 
-class OtherBuild;
+struct TwoBuilds;
 
 /// The device, the picture if there is one, and the time to spend.
 struct Setup {
@@ -24,7 +24,7 @@ struct Setup {
   double min_ms = 300;                ///< least time of all runs of a case
   double enough_ms = 1500;            ///< a case whose runs take so long together has no more, whatever `rounds` says
   unsigned seed = 1;                  ///< of the order within a round
-  OtherBuild* other = nullptr;        ///< runs each case in turn with this build; no errors are measured then
+  TwoBuilds* builds = nullptr;        ///< run each case in turn; no errors are measured then
 };
 
 /// The times of the other build in the same rounds.

@@ -1,4 +1,4 @@
-// The dermis-bench of another build, which runs the cases of this one in turn with it.
+// A dermis-bench of this build and one of another, which run the same cases in turn.
 #pragma once
 
 #include <filesystem>
@@ -16,11 +16,11 @@ namespace dermis::bench {
 inline constexpr const char* answer_option = "--answer";
 inline constexpr const char* answer_greeting = "dermis-bench answers";
 
-class OtherBuild {
+class AnsweringProcess {
  public:
-  /// Starts `folder`/bin/dermis-bench with these arguments and `answer_option`. Throws Error that names --against if
-  /// there is none, or it does not answer.
-  OtherBuild(const std::filesystem::path& folder, std::vector<std::string> arguments);
+  /// Starts a dermis-bench with these arguments and `answer_option`. Throws Error that names --against if it does not
+  /// answer.
+  AnsweringProcess(std::string path, std::vector<std::string> arguments);
 
   /// Milliseconds of one run of a case; none if the build has no case of that name. Throws Error(device) that names
   /// --against if the case fails there.
@@ -31,7 +31,16 @@ class OtherBuild {
   std::optional<ChildProcess> process_;
 };
 
-/// Is that process: answers from the cases until standard input ends.
+/// Both run in processes of their own: beside the one that measures, a process that only answers is up to 5 % faster.
+struct TwoBuilds {
+  AnsweringProcess own;
+  AnsweringProcess other;
+
+  /// `folder` is that of the other build. Throws Error that names --against if it has no bin/dermis-bench.
+  TwoBuilds(const std::filesystem::path& folder, const std::vector<std::string>& arguments);
+};
+
+/// Is such a process: answers from the cases until standard input ends.
 void answer_requests(const std::vector<Case>& cases, const Setup& setup);
 
 }  // namespace dermis::bench

@@ -1,4 +1,4 @@
-#include "measure/other_build.hpp"
+#include "measure/two_builds.hpp"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -6,17 +6,26 @@
 #include <algorithm>
 #include <cstdlib>
 #include <iostream>
+#include <utility>
 
 #include "dermis/error.hpp"
 #include "measure/runner.hpp"
 
 namespace dermis::bench {
 
-OtherBuild::OtherBuild(const std::filesystem::path& folder, std::vector<std::string> arguments)
-    : path_((folder / "bin" / "dermis-bench").string()) {
-  if (access(path_.c_str(), X_OK) != 0 || std::filesystem::is_directory(path_)) {
+namespace {
+
+std::string bench_of(const std::filesystem::path& folder) {
+  std::string path = (folder / "bin" / "dermis-bench").string();
+  if (access(path.c_str(), X_OK) != 0 || std::filesystem::is_directory(path)) {
     throw Error(ErrorCode::input_missing, "--against", folder.string(), "a folder with a program bin/dermis-bench");
   }
+  return path;
+}
+
+}  // namespace
+
+AnsweringProcess::AnsweringProcess(std::string path, std::vector<std::string> arguments) : path_(std::move(path)) {
   arguments.emplace_back(answer_option);
   process_.emplace(ChildProcess::Program{.path = path_, .arguments = std::move(arguments), .is_silent = true});
   if (process_->read_line() != answer_greeting) {
@@ -25,7 +34,7 @@ OtherBuild::OtherBuild(const std::filesystem::path& folder, std::vector<std::str
   }
 }
 
-std::optional<double> OtherBuild::run_ms(const std::string& name) {
+std::optional<double> AnsweringProcess::run_ms(const std::string& name) {
   process_->send(name);
   const std::string answer = process_->read_line().value_or("no answer");
   if (answer == "unknown") return std::nullopt;
@@ -37,6 +46,9 @@ std::optional<double> OtherBuild::run_ms(const std::string& name) {
   }
   return ms;
 }
+
+TwoBuilds::TwoBuilds(const std::filesystem::path& folder, const std::vector<std::string>& arguments)
+    : own("/proc/self/exe", arguments), other(bench_of(folder), arguments) {}
 
 void answer_requests(const std::vector<Case>& cases, const Setup& setup) {
   Stage stage(setup);
