@@ -47,7 +47,7 @@ std::ptrdiff_t bytes_of_format(const params::ImageParams& image) {
 /// Different buffers of a caller may be parts of the same one.
 cl_mem whole_of(const cl::Buffer& buffer) {
   cl_mem parent = nullptr;
-  constexpr std::size_t handle_bytes = sizeof(cl_mem);  // NOLINT(bugprone-sizeof-expression)
+  constexpr std::size_t handle_bytes = sizeof(cl_mem);  // NOLINT(bugprone-sizeof-expression): of a handle
   const cl_int error = clGetMemObjectInfo(buffer(), CL_MEM_ASSOCIATED_MEMOBJECT, handle_bytes, &parent, nullptr);
   if (error != CL_SUCCESS) throw cl::Error(error, "clGetMemObjectInfo");
   return parent != nullptr ? parent : buffer();
