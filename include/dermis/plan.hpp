@@ -174,25 +174,30 @@ enum class TileKind : std::uint8_t {
   flat,              ///< filtered without depth terms
   curved,            ///< filtered
   reused,            ///< skipped: nothing within reach has changed since the frame before
+  mixed,             ///< of blocks: filtered, and taps may fall on other materials, or beyond the frame
 };
 
 template <>
-inline constexpr std::array<Named<TileKind>, 7> word_table<TileKind> = {
+inline constexpr std::array<Named<TileKind>, 8> word_table<TileKind> = {
     {{TileKind::without_material, "without_material"},
      {TileKind::narrow, "narrow"},
      {TileKind::unlit, "unlit"},
      {TileKind::uniform, "uniform"},
      {TileKind::flat, "flat"},
      {TileKind::curved, "curved"},
-     {TileKind::reused, "reused"}}};
+     {TileKind::reused, "reused"},
+     {TileKind::mixed, "mixed"}}};
 
-/// The tiles of a run.
+/// The tiles of a run, or its blocks.
 struct TileMap {
   int tile_width = 0;   ///< px
   int tile_height = 0;  ///< px; fitted to pixels that scatter and to their taps unless options give it; 16 of bands
   int columns = 0;
   int rows = 0;
   std::vector<TileKind> kinds;  ///< row by row
+
+  /// Those of one kind.
+  std::int64_t count(TileKind kind) const { return std::count(kinds.begin(), kinds.end(), kind); }
 };
 
 /// The pixels of a view, by where their surface lies.
@@ -211,8 +216,9 @@ struct Stats {
   double finish_ms = 0;    ///< outputs that had to wait for the passes
   double total_ms = 0;     ///< wall clock, transfers included
 
-  TileMap tiles;  ///< empty if the method is not separable or the device works pixel by pixel
-  int bands = 1;  ///< of rows, filtered one after the other as memory allows
+  TileMap tiles;   ///< empty if the method is not separable or the device works pixel by pixel
+  TileMap blocks;  ///< 16 x 16 pixels each, of the separable method: a block is filtered by what lies around it
+  int bands = 1;   ///< of rows, filtered one after the other as memory allows
 
   std::int64_t pixels = 0;
   std::int64_t pixels_scattered = 0;  ///< those that are bad included
@@ -226,7 +232,7 @@ struct Stats {
   std::vector<ViewStats> views;      ///< one for each view of the frame
 
   /// Tiles of one kind.
-  std::int64_t count(TileKind kind) const { return std::count(tiles.kinds.begin(), tiles.kinds.end(), kind); }
+  std::int64_t count(TileKind kind) const { return tiles.count(kind); }
 };
 
 /// Called with the share of work done, 0..1. Returning false stops the run after the current step.

@@ -261,6 +261,7 @@ class BandedRun {
       if (until == Until::written) images_.write(band.own);
       add(sum, *stats);
       add(sum.tiles, stats->tiles, band.own.count);
+      add(sum.blocks, stats->blocks, band.own.count);
       ++sum.bands;
       if (band.own.end() == frame_.height) return sum;
     }

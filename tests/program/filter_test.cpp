@@ -588,14 +588,15 @@ TEST_CASE("the numbers of --stats-json add up") {
   std::ifstream file(folder / "stats.json");
   const auto stats = nlohmann::json::parse(file);
 
-  const auto& tiles = stats["tiles"];
-  int tiles_of_kinds = 0;
-  for (const char* kind : {"without_material", "narrow", "unlit", "uniform", "flat", "curved", "reused"}) {
-    tiles_of_kinds += tiles[kind].get<int>();
+  const auto& blocks = stats["blocks"];
+  int blocks_of_kinds = 0;
+  for (const char* kind : {"without_material", "narrow", "unlit", "uniform", "flat", "curved", "reused", "mixed"}) {
+    blocks_of_kinds += blocks[kind].get<int>();
   }
-  CHECK(tiles["total"] == tiles_of_kinds);
-  for (const auto& [kind, count] : tiles.items()) CHECK_FALSE(kind.empty());
-  CHECK(tiles["flat"].get<int>() + tiles["curved"].get<int>() > 0);
+  CHECK(blocks["total"] == blocks_of_kinds);
+  CHECK(blocks["total"] == (width + 15) / 16 * ((height + 15) / 16));
+  for (const auto& [kind, count] : blocks.items()) CHECK_FALSE(kind.empty());
+  CHECK(blocks["flat"].get<int>() + blocks["curved"].get<int>() + blocks["mixed"].get<int>() > 0);
   const auto& pixels = stats["pixels"];
   CHECK(pixels["total"] == width * height);
   CHECK(pixels["total"].get<int>() ==
@@ -631,7 +632,7 @@ TEST_CASE("statistics on stdout, as a table or as JSON") {
   const MadeScene scene = make_scene(folder / "in.exr", "step", 20, 16, 4);
   const std::string table = run_well(filter_arguments(scene, folder / "out.exr", {"--material", "1=skin", "--stats"}));
   for (const char* word :
-       {"device", "camera", "rank", " taps", "predicted error", "tiles", "pixels", "scattered", "narrow", "total"})
+       {"device", "camera", "rank", " taps", "predicted error", "blocks", "pixels", "scattered", "narrow", "total"})
     CHECK(table.find(word) != std::string::npos);
   const std::string text =
       run_well(filter_arguments(scene, folder / "out.exr", {"--profile", "skin", "--stats-json", "-"}));

@@ -37,8 +37,8 @@ TEST_CASE("pictures of a sequence come out as each by itself, and reuse what has
   run_well(filter_arguments(scene, folder / "alone/a.exr", profile));
   CHECK(relative_l2(folder / "out/a.exr", folder / "alone/a.exr", "ViewLayer.sss") == 0);
   CHECK(relative_l2(folder / "out/b.exr", folder / "alone/a.exr", "ViewLayer.sss") == 0);
-  CHECK(stats_in(folder / "out/a.json")["tiles"]["reused"] == 0);
-  CHECK(stats_in(folder / "out/b.json")["tiles"]["reused"].get<int>() > 0);
+  CHECK(stats_in(folder / "out/a.json")["blocks"]["reused"] == 0);
+  CHECK(stats_in(folder / "out/b.json")["blocks"]["reused"].get<int>() > 0);
 }
 
 TEST_CASE("the outputs of a sequence are folders") {

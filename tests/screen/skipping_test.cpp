@@ -64,6 +64,14 @@ TEST_CASE("pixels without material and narrow kernels keep their bits and are co
   CHECK(stats.count(TileKind::without_material) == 3);
   CHECK(stats.count(TileKind::narrow) == 3);
   CHECK(stats.count(TileKind::flat) + stats.count(TileKind::curved) == 6);
+  CHECK(stats.blocks.columns == 13);
+  CHECK(stats.blocks.rows == 5);
+  CHECK(stats.blocks.count(TileKind::without_material) == 4 * 5);
+  CHECK(stats.blocks.count(TileKind::narrow) == 4 * 5);
+  CHECK(stats.blocks.count(TileKind::mixed) > 0);  // those along the frame's edge, at least
+  CHECK(stats.blocks.count(TileKind::flat) + stats.blocks.count(TileKind::curved) +
+            stats.blocks.count(TileKind::mixed) ==
+        5 * 5);
   long changed = 0;
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {

@@ -54,7 +54,8 @@ void add_result_arguments(CLI::App& app, FilterArguments& arguments) {
            "all: also the channels that the filter only passes through; changed: the beauty with its alpha and the "
            "scattered light; sss: the scattered light");
   app.add_option("--tile-map", arguments.output.files.tile_map,
-                 "also draw what became of each tile, over the dimmed light, and print what the colours mean")
+                 "also draw what became of each block of 16x16 pixels, over the dimmed light, and print what the "
+                 "colours mean")
       ->check(folder_or_file_ending({".png"}))
       ->type_name("FILE.png");
   add_word(
@@ -73,10 +74,11 @@ void add_message_and_report_arguments(CLI::App& app, FilterArguments& arguments)
   add_stats_arguments(app, arguments.output);
   app.add_option(
          "--report", arguments.report,
-         "write what became of each picture as JSON: status, times, pixels, settings, messages; the file is whole "
+         "a folder, or FILE.html: a page to look at for each picture, with before and after, maps of the change, the "
+         "kernels and the blocks, times and settings. FILE.json: what became of each picture; the file is whole "
          "whenever it is read")
-      ->check(file_name_ending({".json"}))
-      ->type_name("FILE.json");
+      ->check(folder_or_file_ending({".json", ".html"}))
+      ->type_name("FOLDER");
   add_word(app, "--progress", arguments.progress,
            "how far it is: auto, a bar on a terminal, else plain, lines on stderr; for farms on stdout percent, "
            "\"Progress: 42%\", alf, \"ALF_PROGRESS 42%\", or openjd, \"openjd_progress: 42.0\"");

@@ -24,13 +24,13 @@ struct Output {
   const char* argument;
   std::string OutputFiles::*path;
   const char* ending;
+  const char* name_alone = nullptr;  ///< in a folder, for the only picture; else that of the input
 };
 
-constexpr Output outputs[] = {{"--output", &OutputFiles::output, ".exr"},
-                              {"--preview", &OutputFiles::preview, ".png"},
-                              {"--tile-map", &OutputFiles::tile_map, ".png"},
-                              {"--view-report", &OutputFiles::view_report, ".png"},
-                              {"--stats-json", &OutputFiles::stats_json, ".json"}};
+constexpr Output outputs[] = {
+    {"--output", &OutputFiles::output, ".exr"},         {"--preview", &OutputFiles::preview, ".png"},
+    {"--tile-map", &OutputFiles::tile_map, ".png"},     {"--view-report", &OutputFiles::view_report, ".png"},
+    {"--report", &OutputFiles::page, ".html", "index"}, {"--stats-json", &OutputFiles::stats_json, ".json"}};
 
 void check_standard_output(const OutputArguments& arguments) {
   if (arguments.files.stats_json != "-") return;
@@ -47,8 +47,11 @@ void check_standard_output(const OutputArguments& arguments) {
 /// file of its own, for which a folder of such a name is in the way.
 std::string path_for(const FrameFile& input, const Output& output, const std::string& path, std::size_t inputs) {
   std::error_code ignored;
-  if (fs::is_directory(path, ignored) && (inputs > 1 || fs::path(path).extension() != output.ending))
-    return (fs::path(path) / (fs::path(input.path).stem().string() + output.ending)).string();
+  if (fs::is_directory(path, ignored) && (inputs > 1 || fs::path(path).extension() != output.ending)) {
+    const bool is_alone = inputs == 1 && input.pattern.empty() && output.name_alone != nullptr;
+    const std::string name = is_alone ? output.name_alone : fs::path(input.path).stem().string();
+    return (fs::path(path) / (name + output.ending)).string();
+  }
   if (inputs > 1 && !is_pattern(path))
     throw Error(ErrorCode::usage, output.argument, path,
                 fmt::format("a folder that exists, or #### in its name, for {} pictures", inputs));

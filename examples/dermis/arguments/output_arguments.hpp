@@ -19,6 +19,7 @@ struct OutputFiles {
   std::string preview;
   std::string tile_map;
   std::string view_report;
+  std::string page;
   std::string stats_json;  ///< "-" is standard output
 };
 

@@ -87,7 +87,7 @@ void check_tile_map(const FilterArguments& arguments) {
   const std::string& tile_map = arguments.output.files.tile_map;
   if (method_of(arguments) == Method::exact && !tile_map.empty())
     throw Error(ErrorCode::usage, "--tile-map", tile_map + " with the exact method",
-                "the separable method with it, for the exact one has no tiles");
+                "the separable method with it, for the exact one has no such blocks");
 }
 
 Options options_of(const FilterArguments& arguments) {
@@ -104,13 +104,31 @@ Options options_of(const FilterArguments& arguments) {
   return options;
 }
 
+/// Whether a report is a record of all pictures, in place of a page for each.
+bool is_record(const std::string& report) { return report.ends_with(".json"); }
+
+/// The outputs, with the pages of a report.
+OutputArguments outputs_of(const FilterArguments& arguments) {
+  OutputArguments output = arguments.output;
+  if (!is_record(arguments.report)) output.files.page = arguments.report;
+  return output;
+}
+
+/// The record of a call, or the page that lists its pictures. The tasks of a farm each have a part of them: they would
+/// take such a page from each other.
+std::string record_of(const std::string& report, const Shot& shot) {
+  if (is_record(report)) return report;
+  if (!shot.is_sequence || shot.is_part || !std::filesystem::is_directory(report)) return {};
+  return (std::filesystem::path(report) / "index.html").string();
+}
+
 /// Refuses a report that cannot be written before the work that it is about, and two kinds of text on standard output.
 void check_report(const FilterArguments& arguments) {
   const bool is_for_farm = arguments.progress != ProgressStyle::automatic && arguments.progress != ProgressStyle::plain;
   if (is_for_farm && arguments.output.files.stats_json == "-")
     throw Error(ErrorCode::usage, "--progress", fmt::format("{} with --stats-json -", name_of(arguments.progress)),
                 "only one of them on standard output");
-  if (arguments.report.empty()) return;
+  if (!is_record(arguments.report)) return;
   const OutputArguments& output = arguments.output;
   check_outputs({{"--output", output.files.output}, {"--stats-json", output.files.stats_json}},
                 {{"--report", arguments.report}});
@@ -165,7 +183,7 @@ FilterJob job_of(const FilterArguments& arguments) {
                 "a view to report on");
   SurfaceRequest surface = request_of(arguments.surface);
   // After the materials: a name with a blank and without quotes has its end among the files.
-  FilterJob job{.shot = shot_of(arguments.output),
+  FilterJob job{.shot = shot_of(outputs_of(arguments)),
                 .surface = std::move(surface),
                 .options = options,
                 .sheared = arguments.sheared.value_or(options.jitter == 0 && choose_taps({}, options).options.sheared),
@@ -180,10 +198,11 @@ FilterJob job_of(const FilterArguments& arguments) {
                 .skips_existing = arguments.skips_existing,
                 .messages = arguments.messages,
                 .progress = arguments.progress,
-                .report = arguments.report,
+                .report = {},
                 .device = arguments.device,
                 .command = {}};
   check_report(arguments);
+  job.report = record_of(arguments.report, job.shot);
   if (arguments.skips_existing && arguments.output.in_place)
     throw Error(ErrorCode::usage, "--skip-existing", "it with --in-place",
                 "results that do not take the place of what they are made from");

@@ -25,7 +25,7 @@ struct FilterJob {
   bool skips_existing;  ///< results that are what would be made
   MessageArguments messages;
   ProgressStyle progress;
-  std::string report;  ///< a file; or empty
+  std::string report;  ///< of all pictures: a file; or empty
   DeviceArguments device;
   // For the record in the result:
   std::string settings = {};     ///< as TOML

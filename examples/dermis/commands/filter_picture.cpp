@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <filesystem>
 #include <string_view>
 #include <utility>
 
@@ -23,6 +24,7 @@
 #include "files/output_file.hpp"
 #include "files/picture_png.hpp"
 #include "files/picture_roles.hpp"
+#include "files/surface_pixels.hpp"
 #include "files/view_factor.hpp"
 #include "report/standard_output.hpp"
 #include "report/stopwatch.hpp"
@@ -62,14 +64,11 @@ ChosenTaps choose_taps_for(const FilterJob& job, const std::vector<MaterialPixel
   return taps;
 }
 
-/// Refuses a map of tiles that there will not be, before the work that it needs.
-void check_tiles(const std::string& tile_map, Method method, const DeviceInfo& device) {
-  if (tile_map.empty()) return;
-  if (method == Method::exact)
-    throw Error(ErrorCode::usage, "--tile-map", tile_map + " with the exact method",
-                "a tolerance that taps can meet, for the exact method has no tiles");
-  if (device.type == "GPU")
-    throw Error(ErrorCode::usage, "--tile-map", tile_map + " on a GPU", "a device that works tile by tile, as a CPU");
+/// Refuses a map of blocks that there will not be, before the work that it needs.
+void check_tile_map(const std::string& path, Method method) {
+  if (!path.empty() && method == Method::exact)
+    throw Error(ErrorCode::usage, "--tile-map", path + " with the exact method",
+                "a tolerance that taps can meet, for the exact method has no such blocks");
 }
 
 Stats run_plan(FilterSession& session, const Frame& frame, const std::vector<LoadedView>& views, const Told& told) {
@@ -133,18 +132,52 @@ void check_lighting(BeautyParts parts, const PassFit& fit, int width, const std:
                               beauty, name_of(parts.lighting), percent(other.off), name_of(parts.lighting)));
 }
 
+/// RGB of the light that the filter has scattered.
+std::vector<float> scattered_light(const exr::Picture& picture, const ResultChannels& channels) {
+  std::vector<float> rgb;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const std::vector<float> plane = picture.plane(channels.scattered[c]);
+    rgb.resize(3 * plane.size());
+    for (std::size_t i = 0; i < plane.size(); ++i) rgb[3 * i + c] = plane[i];
+  }
+  return rgb;
+}
+
+/// The radius of the kernel of each pixel, in pixels; 0 where nothing scatters.
+std::vector<float> kernel_radius_px(const FilterJob& job, const SurfaceInput& input) {
+  const LoadedFrame& loaded = input.loaded;
+  const std::vector<std::uint8_t> scatters = scattering_pixels(loaded, job.surface.profiles);
+  std::vector<double> radius_mm;
+  for (const NamedProfile& named : job.surface.profiles) radius_mm.push_back(kernel_radius_mm(named.profile));
+  std::vector<float> radius_px(scatters.size());
+  for (std::size_t i = 0; i < scatters.size(); ++i) {
+    if (scatters[i] == 0) continue;
+    std::size_t m = 0;
+    while (m + 1 < radius_mm.size() && static_cast<float>(job.surface.profiles[m].id.value_or(0)) != loaded.material[i])
+      ++m;
+    const auto pixel_mm = pixel_mm_at(loaded.depth[i], input.camera.camera, job.surface.mm_per_unit);
+    if (pixel_mm) radius_px[i] = static_cast<float>(radius_mm[m] / *pixel_mm);
+  }
+  return radius_px;
+}
+
+/// What a page shows of a view, with its light of before; the beauty if the filter makes one, else the light alone.
+PageImages page_images_of(const FilterJob& job, const SurfaceInput& input, const ResultChannels& channels,
+                          std::span<const float> before, std::span<const float> beauty, const TileMap& blocks) {
+  const int width = input.picture.width();
+  const int height = input.picture.height();
+  const std::vector<float> scattered = beauty.empty() ? scattered_light(input.picture, channels) : std::vector<float>();
+  std::vector<float> drawn;
+  if (!blocks.kinds.empty()) drawn = tile_map(width, height, blocks, input.loaded.light);
+  return page_images(width, height, before, beauty.empty() ? scattered : beauty, kernel_radius_px(job, input), drawn);
+}
+
 /// The beauty that the filter has changed, without what was not in the picture.
 void finish_beauty(const FilterJob& job, Compose compose, const BeautyParts& parts, const ResultChannels& channels,
                    SurfaceInput& input, std::vector<float>& beauty, Messages& messages) {
   Repairs repairs;
-  if (compose == Compose::sum || needs_repair(parts, beauty)) {
-    std::vector<float> scattered(beauty.size());
-    for (std::size_t c = 0; c < 3; ++c) {
-      const std::vector<float> plane = input.picture.plane(channels.scattered[c]);
-      for (std::size_t i = 0; i < plane.size(); ++i) scattered[3 * i + c] = plane[i];
-    }
-    repairs = compose_beauty(compose, parts, scattered, beauty);
-  }
+  if (compose == Compose::sum || needs_repair(parts, beauty))
+    repairs = compose_beauty(compose, parts, scattered_light(input.picture, channels), beauty);
   const std::string name = pass_of(channels.beauty);
   if (repairs.negative > 0)
     messages.note(fmt::format("{}: {} values came out below 0 and are 0", name, repairs.negative));
@@ -180,15 +213,15 @@ std::vector<std::string> files_of(const std::vector<LoadedView>& views) {
 }
 
 /// A view in which nothing scatters: its light is the scattered light, too.
-ViewResult copy_view(const FilterJob& job, SurfaceInput& input, FilterSession& session, const StepTimes& times,
-                     Messages& messages) {
-  ViewResult result{true, result_channels(job.layers, input, messages), {}, {}, {}};
+ViewResult copy_view(const FilterJob& job, const PictureFiles& files, SurfaceInput& input, FilterSession& session,
+                     const StepTimes& times, Messages& messages) {
+  ViewResult result{true, result_channels(job.layers, input, messages), {}, {}, {}, {}};
   check_compression(job.compression, input.picture, input.roles, result.channels.written);
   input.picture.add_channels(result.channels.scattered, Format::f32);
-  input.picture.store(result.channels.scattered,
-                      scattering_light(input.loaded, input.lighting, job.options.albedo_mix));
+  const std::vector<float> light = scattering_light(input.loaded, input.lighting, job.options.albedo_mix);
+  input.picture.store(result.channels.scattered, light);
   Stats stats;
-  stats.tiles = {input.picture.width(), input.picture.height(), 1, 1, {TileKind::without_material}};
+  stats.blocks = {input.picture.width(), input.picture.height(), 1, 1, {TileKind::without_material}};
   stats.pixels = stats.pixels_without_material =
       std::int64_t{input.picture.width()} * std::int64_t{input.picture.height()};
   result.report = {
@@ -204,6 +237,8 @@ ViewResult copy_view(const FilterJob& job, SurfaceInput& input, FilterSession& s
       .input = {},
       .notes = {},
       .warnings = {}};
+  if (!files.outputs.page.empty())
+    result.page = page_images_of(job, input, result.channels, light, light, stats.blocks);
   result.light = std::move(input.loaded.light);
   return result;
 }
@@ -219,12 +254,15 @@ ViewResult filter_view(const FilterJob& job, const PictureFiles& files, ReadView
     if (!job.may_be_empty && !job.shot.is_sequence) require_scattering(input, job.surface);
     messages.note(fmt::format("{}: nothing in it scatters: it is copied", files.input.path));
     times.read_ms = view.read_ms + step.lap_ms();
-    return copy_view(job, input, session, times, messages);
+    return copy_view(job, files, input, session, times, messages);
   }
   auto [pixels, channels, beauty, frame] = prepare_view(job, input, messages);
   const bool has_beauty = !beauty.empty();
   times.read_ms = view.read_ms + step.lap_ms();
 
+  std::vector<float> seen_before;
+  if (!files.outputs.page.empty())
+    seen_before = has_beauty ? beauty : scattering_light(input.loaded, input.lighting, job.options.albedo_mix);
   std::vector<float> before = beauty;
   const std::vector<float> other = has_beauty ? load_other_passes(input.picture, input.roles) : std::vector<float>();
   const BeautyParts parts{before, input.loaded.light, input.loaded.albedo,   input.loaded.matte,
@@ -247,7 +285,7 @@ ViewResult filter_view(const FilterJob& job, const PictureFiles& files, ReadView
   const Plan* plan = nullptr;
   try {
     const ChosenTaps taps = choose_taps_for(job, pixels, input.lighting, messages);
-    check_tiles(files.outputs.tile_map, taps.options.method, device.info());
+    check_tile_map(files.outputs.tile_map, taps.options.method);
     transmit_light(device, job.surface, frame, input);
     before = beauty;  // with the light that comes through
     plan = &session.plan(taps, FrameDescription::of(frame));
@@ -263,6 +301,8 @@ ViewResult filter_view(const FilterJob& job, const PictureFiles& files, ReadView
   if (!files.outputs.view_report.empty()) views_report = measure_views(*plan, frame);
 
   if (has_beauty) finish_beauty(job, compose, parts, channels, input, beauty, messages);
+  std::optional<PageImages> page;
+  if (!files.outputs.page.empty()) page = page_images_of(job, input, channels, seen_before, beauty, stats.blocks);
   return {false,
           channels,
           {.device = device.info(),
@@ -278,7 +318,8 @@ ViewResult filter_view(const FilterJob& job, const PictureFiles& files, ReadView
            .notes = {},
            .warnings = {}},
           files.outputs.tile_map.empty() ? std::vector<float>() : std::move(input.loaded.light),
-          std::move(views_report)};
+          std::move(views_report),
+          std::move(page)};
 }
 
 /// The channels to write of all views; none stands for all that there are.
@@ -294,6 +335,7 @@ void check_views(const std::vector<std::string>& views, const OutputFiles& files
   const std::string argument = !files.preview.empty()       ? "--preview"
                                : !files.tile_map.empty()    ? "--tile-map"
                                : !files.view_report.empty() ? "--view-report"
+                               : !files.page.empty()        ? "--report"
                                                             : "";
   if (views.size() > 1 && !argument.empty())
     throw Error(ErrorCode::usage, argument, fmt::format("it for the views {}", fmt::join(views, ", ")),
@@ -377,7 +419,12 @@ double write_filtered(const FilterJob& job, const OutputFiles& files, FilteredPi
   draw(files.preview, "--preview",
        [&] { return srgb_png(width, height, exr::load(picture, shown.report.roles, Role::beauty)); });
   draw(files.tile_map, "--tile-map",
-       [&] { return tile_map_png(width, height, shown.report.stats.tiles, shown.light); });
+       [&] { return srgb_png(width, height, tile_map(width, height, shown.report.stats.blocks, shown.light)); });
+  if (shown.page)
+    draw(files.page, "--report", [&] {
+      return picture_page(std::filesystem::path(files.output).filename().string(), job.command, *shown.page,
+                          shown.report);
+    });
   if (shown.views_report)
     draw(files.view_report, "--view-report", [&] { return view_report_png(width, height, *shown.views_report); });
   picture.write(files.output, job.compression, written_channels(filtered.views));
@@ -392,7 +439,7 @@ void report_filtered(const FilterJob& job, const OutputFiles& files, FilteredPic
     StepTimes& times = view.report.times;
     times.write_ms = write_ms;
     times.total_ms = times.read_ms + times.plan_ms + times.run_ms + times.write_ms;
-    if (!files.tile_map.empty()) print(legend_of(view.report.stats.tiles));
+    if (!files.tile_map.empty()) print(legend_of(view.report.stats.blocks));
     if (view.views_report) print(legend_of(*view.views_report, view.report.views));
     if (job.stats) print(text_of(view.report));
     reports.push_back(view.report);

@@ -17,6 +17,7 @@
 #include "commands/surface_input.hpp"
 #include "files/result_record.hpp"
 #include "report/messages.hpp"
+#include "report/picture_page.hpp"
 #include "report/stats_report.hpp"
 #include "report/view_report.hpp"
 
@@ -45,6 +46,7 @@ struct ViewResult {
   StatsReport report;
   std::vector<float> light;                ///< RGB, for a map of tiles
   std::optional<ViewReport> views_report;  ///< if it is asked for
+  std::optional<PageImages> page;          ///< if it is asked for
 };
 
 struct FilteredPicture {

@@ -141,6 +141,7 @@ class Pictures {
   nlohmann::ordered_json with_output(std::size_t i, std::string_view status) const {
     nlohmann::ordered_json record = picture_record(all()[i].input, status);
     record["output"] = all()[i].outputs.output;
+    if (!all()[i].outputs.page.empty()) record["page"] = all()[i].outputs.page;
     return record;
   }
 

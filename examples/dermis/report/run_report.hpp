@@ -1,4 +1,4 @@
-/// --report: what became of each picture of a call, as JSON.
+/// --report: what became of each picture of a call, as JSON, or as a page that leads to those of the pictures.
 #pragma once
 
 #include <chrono>
@@ -11,8 +11,8 @@ namespace dermis::program {
 /// pictures come, not too often, and at the end.
 class RunReport {
  public:
-  /// No report if `path` is empty. `about` stands before the pictures. Throws
-  /// Error(output).
+  /// No report if `path` is empty, a page if it ends in .html. `about` stands
+  /// before the pictures. Throws Error(output).
   RunReport(std::string path, nlohmann::ordered_json about);
 
   /// Adds the record of a picture. Throws Error(output).

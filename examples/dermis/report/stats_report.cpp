@@ -125,6 +125,7 @@ std::string text_of_steps(const StatsReport& report) {
   line("  scatter", stats.scatter_ms);
   if (!report.views.empty()) line("  views", stats.views_ms);
   line("  finish", stats.finish_ms);
+  if (times.total_ms == 0) return text;  // as long as the result is not written
   line("write", times.write_ms);
   line("total", times.total_ms);
   return text;
@@ -152,8 +153,8 @@ json json_of(const StatsReport& report) {
                  {"notes", report.notes},
                  {"warnings", report.warnings}};
   object["bands"] = stats.bands;
-  object["tiles"] = {{"total", stats.tiles.kinds.size()}};
-  for (const auto& [kind, name] : word_table<TileKind>) object["tiles"][std::string(name)] = stats.count(kind);
+  object["blocks"] = {{"total", stats.blocks.kinds.size()}};
+  for (const auto& [kind, name] : word_table<TileKind>) object["blocks"][std::string(name)] = stats.blocks.count(kind);
   object["pixels"] = {{"total", stats.pixels},
                       {"scattered", stats.pixels_scattered},
                       {"without_material", stats.pixels_without_material},
@@ -189,10 +190,11 @@ std::string text_of(const StatsReport& report) {
     text += fmt::format(", tolerance {}", tolerance);
   text += '\n';
   for (const MaterialReport& material : report.materials) text += text_of(material);
-  const auto tiles = static_cast<std::int64_t>(stats.tiles.kinds.size());
+  const auto blocks = static_cast<std::int64_t>(stats.blocks.kinds.size());
   if (stats.bands > 1) text += fmt::format("bands       {}\n", stats.bands);
-  text += fmt::format("tiles       {}\n", tiles);
-  for (const auto& [kind, name] : word_table<TileKind>) text += counted(in_words(name), stats.count(kind), tiles);
+  text += fmt::format("blocks      {}\n", blocks);
+  for (const auto& [kind, name] : word_table<TileKind>)
+    text += counted(in_words(name), stats.blocks.count(kind), blocks);
   text += fmt::format("pixels      {}\n", stats.pixels);
   text += counted("scattered", stats.pixels_scattered, stats.pixels);
   text += counted("without material", stats.pixels_without_material, stats.pixels);

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
 #include <numbers>
 #include <utility>
 #include <vector>
@@ -32,6 +33,14 @@ class PackedTables {
  private:
   std::vector<std::byte> bytes_;
 };
+
+TileKind kind_of(const params::BlockPasses& block) {
+  const auto& [x, y] = block;
+  if (x.block_class == CLASS_EMPTY) return TileKind::without_material;
+  if (x.px_per_mm == 0) return TileKind::narrow;
+  if (x.material == 0 || y.material == 0) return TileKind::mixed;
+  return x.block_class == CLASS_FLAT && y.block_class == CLASS_FLAT ? TileKind::flat : TileKind::curved;
+}
 
 }  // namespace
 
@@ -82,6 +91,18 @@ void SeparableMethod::upload(const cl::Context& context, const MaterialTables& t
   taps_at_.weights = packed.add(tables.weights);
   taps_at_.flat_weights = packed.add(tables.flat_weights);
   taps_ = dermis::upload(context, packed.bytes());
+}
+
+void SeparableMethod::add_to(Stats& stats, const FrameRun& run) const {
+  const RowRange rows = run.own_rows();
+  TileMap& map = stats.blocks;
+  map = {BLOCK, BLOCK, run.frame().blocks_x, parts_of(rows.count, BLOCK), {}};
+  std::vector<params::BlockPasses> passes(static_cast<std::size_t>(map.columns) * map.rows);
+  constexpr std::size_t bytes = sizeof(params::BlockPasses);
+  run.queue().enqueueReadBuffer(run.memory().passes, CL_TRUE,
+                                static_cast<std::size_t>(map.columns) * (rows.first / BLOCK) * bytes,
+                                passes.size() * bytes, passes.data());
+  std::transform(passes.begin(), passes.end(), std::back_inserter(map.kinds), kind_of);
 }
 
 cl::Buffer SeparableMethod::rotations(const FrameRun& run) const {

@@ -15,6 +15,7 @@ class SeparableMethod : public ScatterMethod {
   void measure(const MaterialTables& tables) override;
   void upload(const cl::Context& context, const MaterialTables& tables) override;
   int reach_rows(const Finest& finest, const Camera& camera, const FrameSize& frame) const override;
+  void add_to(Stats& stats, const FrameRun& run) const override;
 
  protected:
   /// The axes of rotated taps for the camera of a frame; some buffer if taps are not rotated.

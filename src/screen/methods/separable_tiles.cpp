@@ -23,6 +23,19 @@ std::size_t ring_rows(std::size_t rows, int frame_rows) {
   return std::min<std::size_t>(frame_rows, std::bit_ceil(std::min<std::size_t>(frame_rows, rows)));
 }
 
+/// Blocks that were skipped with the tile that holds their first pixel.
+void skip_blocks(TileMap& blocks, const TileMap& tiles) {
+  using enum TileKind;
+  for (int y = 0; y < blocks.rows; ++y) {
+    for (int x = 0; x < blocks.columns; ++x) {
+      const int tile = y * BLOCK / tiles.tile_height * tiles.columns + x * BLOCK / tiles.tile_width;
+      const TileKind kind = tiles.kinds[tile];
+      TileKind& block = blocks.kinds[static_cast<std::size_t>(y) * blocks.columns + x];
+      if (block != without_material && (kind == unlit || kind == uniform || kind == reused)) block = kind;
+    }
+  }
+}
+
 class SeparableTiles final : public SeparableMethod {
  public:
   using SeparableMethod::SeparableMethod;
@@ -65,6 +78,8 @@ class SeparableTiles final : public SeparableMethod {
     map = {tile.width, tile_height, tile.columns, parts_of(run.own_rows().count, tile_height), {}};
     map.kinds.resize(static_cast<std::size_t>(map.columns) * map.rows);
     run.queue().enqueueReadBuffer(run.memory().method[kinds], CL_TRUE, 0, map.kinds.size(), map.kinds.data());
+    SeparableMethod::add_to(stats, run);
+    skip_blocks(stats.blocks, map);
   }
 
   bool by_tiles() const override { return true; }
