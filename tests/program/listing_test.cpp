@@ -35,8 +35,8 @@ std::map<int, int> count_ids(const std::string& path) {
 TEST_CASE("help and version are no errors") {
   CHECK(run_well({"--version"}) == "dermis " DERMIS_VERSION "\n");
   const std::string help = run_well({"--help"});
-  for (const char* command : {"filter", "texture", "compare-methods", "light", "info", "devices", "profiles", "compare",
-                              "scene", "Exit codes"})
+  for (const char* command : {"filter", "texture", "compare-methods", "sheet", "light", "info", "devices", "profiles",
+                              "compare", "scene", "Exit codes"})
     CHECK(has(help, command));
   const std::string filter = run_well({"filter", "--help"});
   for (const char* option : {"--model",       "--rank",         "--taps",       "--placement",
@@ -54,7 +54,7 @@ TEST_CASE("help and version are no errors") {
 }
 
 TEST_CASE("help comes in groups that fit a screen, the usual options first") {
-  for (const std::string command : {"filter", "texture", "taps", "compare-methods"}) {
+  for (const std::string command : {"filter", "texture", "taps", "compare-methods", "sheet"}) {
     std::istringstream help(run_well({command, "--help"}));
     std::vector<std::string> groups;
     int lines = 0;

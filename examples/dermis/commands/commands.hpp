@@ -15,6 +15,7 @@ struct Command {
 Command add_filter(CLI::App& parent);
 Command add_texture(CLI::App& parent);
 Command add_compare_methods(CLI::App& parent);
+Command add_sheet(CLI::App& parent);
 Command add_light(CLI::App& parent);
 Command add_info(CLI::App& parent);
 Command add_warm(CLI::App& parent);

@@ -56,11 +56,12 @@ int parse_and_run(int argc, char** argv) {
       "Exit codes: 0 done, 1 differs (compare), 2 usage, 3 input missing, 4 input damaged or unsupported,\n"
       "5 role or camera missing, 6 output, 7 device, 8 some pictures of several failed.");
   wrap_help(app);
-  const std::array commands{add_filter(app),  add_texture(app),   add_light(app), add_info(app),
-                            add_warm(app),    add_profiles(app),  add_taps(app),  add_compare_methods(app),
-                            add_compare(app), add_preview(app),   add_scene(app), add_devices(app),
-                            add_submit(app),  add_completion(app)};
-  for (const char* name : {"filter", "texture", "light", "info", "warm", "compare-methods", "compare", "preview"})
+  const std::array commands{add_filter(app),  add_texture(app),    add_light(app), add_info(app),
+                            add_warm(app),    add_profiles(app),   add_taps(app),  add_compare_methods(app),
+                            add_compare(app), add_preview(app),    add_scene(app), add_devices(app),
+                            add_submit(app),  add_completion(app), add_sheet(app)};
+  for (const char* name :
+       {"filter", "texture", "light", "info", "warm", "compare-methods", "sheet", "compare", "preview"})
     add_memory_argument(*app.get_subcommand(name));
   if (argc > 1 && argv[1][0] != '-') check_command(app, argv[1]);
   std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);

@@ -5,11 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <deque>
 
 #include "dermis/oracle/compare.hpp"
 #include "files/picture_png.hpp"
-#include "report/gnuplot.hpp"
+#include "report/contact_sheet.hpp"
 
 namespace dermis::program {
 namespace {
@@ -55,18 +54,6 @@ double relative_l2(int width, int height, const std::vector<float>& a, const std
   return oracle::compare(as_picture(width, height, a), as_picture(width, height, b), where).relative_l2;
 }
 
-std::string panel(const std::string& title, const FileInMemory& png) {
-  return fmt::format("set title {} offset 0,-0.8\nplot {} binary filetype=png with rgbimage notitle\n",
-                     script_string(title), script_string(png.name()));
-}
-
-FigureSize sheet_size(int width, int height, std::size_t columns) {
-  constexpr int widest_px = 480;
-  constexpr int title_px = 30;
-  const int panel_px = std::clamp(width, 240, widest_px);
-  return {static_cast<int>(columns) * panel_px, 2 * (panel_px * height / width + title_px)};
-}
-
 }  // namespace
 
 void draw_methods(std::string_view argument, const std::filesystem::path& path, int width, int height,
@@ -78,13 +65,12 @@ void draw_methods(std::string_view argument, const std::filesystem::path& path, 
   const auto percent_off = [&](const std::vector<float>& a, const std::vector<float>& b) {
     return 100 * relative_l2(width, height, a, b, where);
   };
-  std::deque<FileInMemory> files;
-  std::string upper;
-  std::string lower;
+  std::vector<SheetCell> cells;
+  for (const MethodPicture& picture : pictures)
+    cells.push_back({picture.name, srgb_png(width, height, picture.beauty)});
   for (const MethodPicture& picture : pictures) {
-    upper += panel(picture.name, files.emplace_back(srgb_png(width, height, picture.beauty)));
     if (picture.scattered.empty()) {
-      lower += "set multiplot next\n";
+      cells.emplace_back();
       continue;
     }
     std::vector<std::string> numbers;
@@ -92,14 +78,10 @@ void draw_methods(std::string_view argument, const std::filesystem::path& path, 
       numbers.push_back(fmt::format("{:.2f} % off the exact method", percent_off(picture.scattered, exact.scattered)));
     if (has_truth)
       numbers.push_back(fmt::format("{:.1f} % off the path tracer", percent_off(picture.beauty, truth.beauty)));
-    const std::string map = heatmap_png(width, height, error_map(picture.scattered, exact.scattered, where));
-    lower += panel(fmt::format("{}", fmt::join(numbers, ", ")), files.emplace_back(map));
+    cells.push_back({fmt::format("{}", fmt::join(numbers, ", ")),
+                     heatmap_png(width, height, error_map(picture.scattered, exact.scattered, where))});
   }
-  const std::string script = fmt::format(
-      "unset tics\nunset border\nunset key\nset size ratio -1\nset margins 0.5,0.5,0.2,1.6\n"
-      "set xrange [0:{}]\nset yrange [0:{}]\nset multiplot layout 2,{}\n{}{}unset multiplot\n",
-      width - 1, height - 1, pictures.size(), upper, lower);
-  draw_figure(argument, path, sheet_size(width, height, pictures.size()), script);
+  draw_sheet(argument, path, width, height, static_cast<int>(pictures.size()), cells);
 }
 
 }  // namespace dermis::program
