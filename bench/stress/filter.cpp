@@ -4,6 +4,7 @@
 #include <cstring>
 #include <utility>
 
+#include "dermis/oracle/materials.hpp"
 #include "inputs/half.hpp"
 
 namespace dermis::bench {
@@ -48,26 +49,13 @@ struct StressMemory {
   }
 };
 
-std::vector<oracle::Material> materials_for_oracle(const std::vector<Material>& materials, const Options& options) {
-  std::vector<oracle::Material> result;
-  result.reserve(materials.size());
-  for (const Material& material : materials) {
-    result.push_back({material.id,
-                      material.profile.albedo_width(),
-                      make_taps(material.profile, material.taps.value_or(options.taps)),
-                      {},
-                      {}});
-  }
-  return result;
-}
-
 }  // namespace
 
 // The oracle's taps are made first, so that the plan finds its own in the cache of taps.
 StressFilter::StressFilter(const Device& device, std::vector<Material> materials, const FrameDescription& frames,
                            const Options& options)
     : options_(options),
-      for_oracle_(materials_for_oracle(materials, options)),
+      for_oracle_(oracle::materials_of(materials, options.taps)),
       plan_(device, std::move(materials), frames, options) {}
 
 StressResult StressFilter::run(const StressField& field) const {

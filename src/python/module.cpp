@@ -1,17 +1,17 @@
-// dermis for Python: numpy arrays in and out, without copies where their layout allows.
-#include <pybind11/numpy.h>
-#include <pybind11/pybind11.h>
+// The module dermis._core: devices, profiles, taps and plans for Python, and the oracle.
 #include <pybind11/stl.h>
 
-#include <array>
-#include <cstdint>
+#include <algorithm>
 #include <map>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "dermis/dermis.hpp"
+#include "python/arrays.hpp"
+#include "python/errors.hpp"
+#include "python/oracle.hpp"
+#include "python/plan_arguments.hpp"
 
 namespace py = pybind11;
 using namespace py::literals;
@@ -19,122 +19,6 @@ using namespace py::literals;
 namespace dermis::python {
 
 namespace {
-
-/// The values of an array, converted if the library does not know their type or layout.
-struct ReadArray {
-  py::array array;
-  Layout layout;
-};
-
-std::optional<Format> format_of(const py::dtype& type) {
-  const auto size = type.itemsize();
-  if (type.byteorder() == '>') return std::nullopt;
-  if (type.kind() == 'f' && size == 2) return Format::f16;
-  if (type.kind() == 'f' && size == 4) return Format::f32;
-  if (type.kind() == 'u' && size == 1) return Format::u8;
-  if (type.kind() == 'u' && size == 2) return Format::u16;
-  if (type.kind() == 'u' && size == 4) return Format::u32;
-  return std::nullopt;
-}
-
-std::string shape_text(const py::array& array) {
-  std::string text = "an array of shape (";
-  for (py::ssize_t i = 0; i < array.ndim(); ++i) text += (i > 0 ? ", " : "") + std::to_string(array.shape(i));
-  return text + ")";
-}
-
-void check_shape(const py::array& array, const char* name, int width, int height, int channels) {
-  const bool is_right = array.ndim() == (channels == 1 ? 2 : 3) && array.shape(0) == height &&
-                        array.shape(1) == width && (channels == 1 || array.shape(2) == channels);
-  if (is_right) return;
-  const std::string size = "(" + std::to_string(height) + ", " + std::to_string(width);
-  throw Error(ErrorCode::usage, name, shape_text(array),
-              size + (channels == 1 ? ")" : ", " + std::to_string(channels) + ")"));
-}
-
-/// A stride of 0 is a packed one for the library, and several values in one place for numpy.
-bool repeats_values(const py::array& array) {
-  for (py::ssize_t i = 0; i < array.ndim(); ++i) {
-    if (array.strides(i) == 0) return true;
-  }
-  return false;
-}
-
-Layout layout_of(const py::array& array, Format format) {
-  return {.format = format,
-          .channel_stride = array.ndim() == 3 ? array.strides(2) : static_cast<std::ptrdiff_t>(bytes_of(format)),
-          .pixel_stride = array.strides(1),
-          .row_stride = array.strides(0)};
-}
-
-ReadArray read_array(const py::object& object, const char* name, int width, int height, int channels) {
-  py::array array = py::array::ensure(object);
-  if (!array) {
-    PyErr_Clear();
-    throw Error(ErrorCode::usage, name, "something else", "an array of numbers");
-  }
-  check_shape(array, name, width, height, channels);
-  std::optional<Format> format = format_of(array.dtype());
-  if (!format || repeats_values(array)) {
-    array = py::array_t<float, py::array::c_style | py::array::forcecast>::ensure(array);
-    if (!array) {
-      PyErr_Clear();
-      throw Error(ErrorCode::usage, name, "values of another kind", "numbers");
-    }
-    format = Format::f32;
-  }
-  return {array, layout_of(array, *format)};
-}
-
-/// An array to write, which is made if the caller has none.
-ReadArray written_array(const py::object& object, const char* name, int width, int height) {
-  if (object.is_none()) {
-    py::array array = py::array_t<float>({height, width, 3});
-    return {array, layout_of(array, Format::f32)};
-  }
-  if (!py::isinstance<py::array>(object)) throw Error(ErrorCode::usage, name, "something else", "an array or None");
-  auto array = py::reinterpret_borrow<py::array>(object);
-  check_shape(array, name, width, height, 3);
-  const std::optional<Format> format = format_of(array.dtype());
-  if (!array.writeable() || repeats_values(array) || !format || (format != Format::f16 && format != Format::f32)) {
-    throw Error(ErrorCode::usage, name, "an array that cannot be written so", "one of float16 or float32, writeable");
-  }
-  return {array, layout_of(array, *format)};
-}
-
-/// A profile, or one as text.
-Profile profile_of(const py::handle& profile) {
-  if (py::isinstance<py::str>(profile)) return parse_profile("profile", profile.cast<std::string>());
-  if (py::isinstance<Profile>(profile)) return profile.cast<Profile>();
-  throw Error(ErrorCode::usage, "profile", "something else", "a Profile, or one as text");
-}
-
-/// A setting's value as text.
-std::string text_of(const py::handle& value) {
-  if (py::isinstance<py::bool_>(value)) return value.cast<bool>() ? "on" : "off";
-  if (value.is_none()) return "none";
-  return py::str(value);
-}
-
-Options options_of(const py::dict& settings) {
-  Options options;
-  for (const auto& [name, value] : settings) set(options, py::str(name).cast<std::string>(), text_of(value));
-  return options;
-}
-
-std::vector<Material> materials_of(const py::object& materials, const std::map<int, double>& pixel_mm) {
-  std::vector<Material> result;
-  const auto add = [&](int id, const py::handle& profile) {
-    const auto size = pixel_mm.find(id);
-    result.push_back({.id = id, .profile = profile_of(profile), .pixel_mm = size == pixel_mm.end() ? 0 : size->second});
-  };
-  if (py::isinstance<py::dict>(materials)) {
-    for (const auto& [id, profile] : materials.cast<py::dict>()) add(id.cast<int>(), profile);
-  } else {
-    add(0, materials);
-  }
-  return result;
-}
 
 /// f(channel, x) of each x, as an array with a channel in its last axis.
 template <class Function>
@@ -149,33 +33,6 @@ py::array_t<double> of_each(const py::array_t<double, py::array::c_style | py::a
     for (int c = 0; c < 3; ++c) *to++ = f(c, from[i]);
   }
   return result;
-}
-
-struct ImageSlot {
-  const char* name;
-  int channels;
-  Image Frame::*image;
-};
-
-constexpr std::array slots = {ImageSlot{"light", 3, &Frame::light},   ImageSlot{"albedo", 3, &Frame::albedo},
-                              ImageSlot{"depth", 1, &Frame::depth},   ImageSlot{"material", 1, &Frame::material},
-                              ImageSlot{"mask", 1, &Frame::mask},     ImageSlot{"matte", 1, &Frame::matte},
-                              ImageSlot{"normal", 3, &Frame::normal}, ImageSlot{"beauty", 3, &Frame::beauty}};
-
-const ImageSlot& slot_of(const std::string& name) {
-  std::string names;
-  for (const ImageSlot& slot : slots) {
-    if (name == slot.name) return slot;
-    names += (names.empty() ? "" : ", ") + std::string(slot.name);
-  }
-  throw Error(ErrorCode::usage, "image", name, names);
-}
-
-FrameDescription description_of(const std::vector<std::string>& images) {
-  Frame frame;
-  static const char there = 0;
-  for (const std::string& name : images) frame.*slot_of(name).image = {.host = &there};
-  return FrameDescription::of(frame);
 }
 
 py::dict dict_of(const Stats& stats) {
@@ -193,21 +50,8 @@ struct Result {
 
 Result run(const Plan& plan, const Camera& camera, double mm_per_unit, const py::object& scattered,
            const py::object& result, const py::object& progress, const py::kwargs& images) {
-  if (!images.contains("light")) throw Error(ErrorCode::role_missing, "light", "no image", "an image");
-  const py::array light = py::array::ensure(images["light"]);
-  if (!light || light.ndim() != 3) throw Error(ErrorCode::usage, "light", "another shape", "(height, width, 3)");
-  Frame frame{.width = static_cast<int>(light.shape(1)),
-              .height = static_cast<int>(light.shape(0)),
-              .camera = camera,
-              .mm_per_unit = mm_per_unit};
-  std::vector<ReadArray> held;
-  for (const auto& [key, value] : images) {
-    if (value.is_none()) continue;
-    const ImageSlot& slot = slot_of(py::str(key).cast<std::string>());
-    held.push_back(
-        read_array(py::reinterpret_borrow<py::object>(value), slot.name, frame.width, frame.height, slot.channels));
-    frame.*slot.image = {.host = held.back().array.data(), .layout = held.back().layout};
-  }
+  const ReadFrame read = read_frame(camera, mm_per_unit, images);
+  Frame frame = read.frame;
   Result out;
   ReadArray to = written_array(scattered, "scattered", frame.width, frame.height);
   frame.scattered = {.host = to.array.mutable_data(), .layout = to.layout};
@@ -235,22 +79,6 @@ Result run(const Plan& plan, const Camera& camera, double mm_per_unit, const py:
   }
   out.stats = dict_of(stats);
   return out;
-}
-
-void add_errors(py::module_& m) {
-  static py::exception<Error> type(m, "Error", PyExc_RuntimeError);
-  py::register_exception_translator([](std::exception_ptr thrown) {
-    try {
-      std::rethrow_exception(std::move(thrown));
-    } catch (const Error& error) {
-      py::object raised = static_cast<const py::object&>(type)(error.what());
-      raised.attr("code") = static_cast<int>(error.code());
-      raised.attr("argument") = std::string(error.argument());
-      raised.attr("seen") = std::string(error.seen());
-      raised.attr("wanted") = std::string(error.wanted());
-      PyErr_SetObject(type.ptr(), raised.ptr());
-    }
-  });
 }
 
 void add_devices(py::module_& m) {
@@ -395,4 +223,5 @@ PYBIND11_MODULE(_core, m) {
   add_profiles(m);
   add_taps(m);
   add_plans(m);
+  add_oracle(m);
 }

@@ -1,12 +1,18 @@
-"""dermis for Python: the same bits as C++ whatever the layout of arrays, errors with their fields, threads."""
+"""dermis for Python: the same bits as C++ whatever the layout of arrays, errors with their fields, threads,
+the oracle, and pictures: DERMIS_PROGRAM names the program to compare with."""
 
+import os
+import pathlib
+import subprocess
 import sys
+import tempfile
 import threading
 import unittest
 
 import dermis
 import numpy as np
 
+SAMPLE = str(pathlib.Path(__file__).parents[2] / "examples/data/monkey_gbuffer.exr")
 HEIGHT, WIDTH = 37, 61
 CAMERA = dermis.Camera.perspective(200, 210, 30, 20)
 
@@ -146,6 +152,114 @@ class Profiles(unittest.TestCase):
 
     def test_settings_are_listed(self):
         self.assertIn("quality", dermis.settings())
+
+
+class Oracle(unittest.TestCase):
+    def test_a_plan_is_within_its_bounds(self):
+        self.assertIn("touching", dermis.oracle.scenes())
+        scene = dermis.oracle.scene("touching", 60, 40)
+        materials = {1: "skin", 2: "burley:1/0.6/0.4"}
+        settings = {"rank": 2, "taps": 9, "lighting": "raw"}
+        expected = dermis.oracle.separable(materials, scene.camera, settings=settings, **scene.images)
+        names = [name for name in scene.images if name != "light"]
+        found = dermis.Plan(materials, images=names, **settings).run(scene.camera, **scene.images)
+        for values, its, bound in ((found.scattered, expected.scattered, expected.scattered_bound),
+                                   (found.result, expected.result, expected.result_bound)):
+            self.assertTrue((np.abs(values - its) <= bound).all())
+        self.assertGreater(np.abs(expected.scattered - scene.images["light"]).max(), 0.1)
+
+    def test_exact_is_what_taps_come_near(self):
+        scene = dermis.oracle.scene("step", 48, 12)
+        images = {name: scene.images[name] for name in ("light", "depth")}
+        exact = dermis.oracle.exact("burley:0.5/0.4/0.3", scene.camera, **images)
+        self.assertIsNone(exact.result)
+        few, many = (np.abs(dermis.oracle.separable("burley:0.5/0.4/0.3", scene.camera, settings={"taps": taps},
+                                                    **images).scattered - exact.scattered).max() for taps in (3, 17))
+        self.assertLess(many, few)
+
+    def test_errors(self):
+        with self.assertRaises(dermis.Error) as raised:
+            dermis.oracle.scene("nosuch", 10, 10)
+        self.assertIn("touching", raised.exception.wanted)
+
+
+class Pictures(unittest.TestCase):
+    def setUp(self):
+        import dermis.exr
+
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+        self.picture = dermis.exr.Picture.read(SAMPLE)
+
+    def path(self, name):
+        return os.path.join(self.folder.name, name)
+
+    def test_roles_and_camera_of_a_renderer(self):
+        roles = self.picture.roles()
+        self.assertEqual((roles.renderer, roles.lighting, roles.layer), ("blender", "raw", "ViewLayer"))
+        self.assertIn("albedo", roles)
+        self.assertNotIn("mask", roles)
+        self.assertEqual(roles["material"], [["ViewLayer.IndexMA.X"]])
+        self.assertIsNone(self.picture.load(roles, "mask"))
+        self.assertEqual(self.picture.load(roles, "light").shape, (540, 960, 3))
+        found = self.picture.camera(roles)
+        self.assertAlmostEqual(found.camera.scale_x, 1333.33, delta=0.1)
+        self.assertEqual(found.warnings, [])
+        other = self.picture.roles(overrides=["mask=ViewLayer.DiffCol.R"])
+        self.assertIn("mask", other)
+
+    def test_the_same_bits_as_the_program(self):
+        program = os.environ["DERMIS_PROGRAM"]
+        command = [program, "filter", SAMPLE, "-o", self.path("out.exr"), "--mm-per-unit", "10", "--material", "1=skin",
+                   "--rank", "2", "--taps", "7", "--output-layers", "sss", "--quiet"]
+        subprocess.run(command, check=True)
+        expected = dermis.exr.Picture.read(self.path("out.exr"))
+        roles = self.picture.roles()
+        found = self.picture.camera(roles)
+        images = self.picture.images(roles, found)
+        del images["beauty"]
+        plan = dermis.Plan({1: "skin"}, images=[name for name in images if name != "light"], rank=2, taps=7)
+        scattered = plan.run(found.camera, mm_per_unit=10, **images).scattered
+        self.assertEqual(len(expected.channels), 3)
+        for name in expected.channels:
+            np.testing.assert_array_equal(scattered[..., "RGB".index(name[-1])], expected[name])
+
+    def test_what_is_written_is_read_again(self):
+        values = np.linspace(0, 1, 540 * 960, dtype=np.float64).reshape(540, 960)
+        self.picture["extra.Z"] = values
+        self.assertIn("extra.Z", self.picture)
+        self.picture.set_attribute("comment", "from Python")
+        self.picture.write(self.path("copy.exr"), compression="zip")
+        copy = dermis.exr.Picture.read(self.path("copy.exr"))
+        self.assertEqual(sorted(copy.channels), sorted(self.picture.channels))
+        np.testing.assert_array_equal(copy["extra.Z"], values.astype(np.float32))
+        np.testing.assert_array_equal(copy["ViewLayer.Depth.Z"], self.picture["ViewLayer.Depth.Z"])
+        self.assertEqual(copy.attribute("comment"), "from Python")
+        self.picture.write(self.path("one.exr"), channels=["extra.Z"])
+        self.assertEqual(dermis.exr.Picture.read(self.path("one.exr")).channels, ["extra.Z"])
+
+        made = dermis.exr.Picture(5, 3)
+        made["Z"] = np.arange(15).reshape(3, 5)
+        made.write(self.path("made.exr"))
+        np.testing.assert_array_equal(dermis.exr.Picture.read(self.path("made.exr"))["Z"], np.arange(15).reshape(3, 5))
+
+    def test_errors_have_their_fields(self):
+        def refused(code, argument, wanted, call):
+            with self.assertRaises(dermis.Error) as raised:
+                call()
+            self.assertEqual(raised.exception.code, code)
+            self.assertIn(argument, raised.exception.argument)
+            self.assertIn(wanted, raised.exception.wanted)
+
+        refused(3, "nosuch.exr", "", lambda: dermis.exr.Picture.read(self.path("nosuch.exr")))
+        with open(self.path("broken.exr"), "wb") as file:
+            file.write(b"no picture")
+        refused(4, "broken.exr", "", lambda: dermis.exr.Picture.read(self.path("broken.exr")))
+        refused(2, "renderer", "blender", lambda: self.picture.roles(renderer="nosuch"))
+        refused(2, "role", "albedo", lambda: self.picture.load(self.picture.roles(), "nosuch"))
+        refused(2, "values", "(540, 960)", lambda: self.picture.__setitem__("Z", np.zeros((2, 2))))
+        refused(2, "size", "1x1", lambda: dermis.exr.Picture(0, 5))
+        refused(6, "none", "", lambda: self.picture.write(self.path("none/out.exr")))
 
 
 if __name__ == "__main__":

@@ -3,9 +3,9 @@
 #include <cmath>
 #include <string>
 
+#include "dermis/oracle/materials.hpp"
 #include "dermis/plan.hpp"
 #include "support/catch.hpp"
-#include "support/oracle_material.hpp"
 #include "support/random_frame.hpp"
 #include "support/tally.hpp"
 
@@ -59,7 +59,7 @@ TEST_CASE("discs equal the oracle within float rounding", "[disc][kernels]") {
     const dermis::DiscOptions& disc = random_frame.options.disc;
     CAPTURE(test_seed(), round, width, height, disc.samples, disc.tangent_plane, disc.prefiltered, disc.accumulate);
     const auto materials =
-        oracle_materials(random_frame.materials, {.model = dermis::Model::pre_integrated, .count = 3});
+        dermis::oracle::materials_of(random_frame.materials, {.model = dermis::Model::pre_integrated, .count = 3});
     const oracle::Reference expected = oracle::disc(frame, materials, random_frame.options);
 
     Plan(device, random_frame.materials, FrameDescription::of(frame), random_frame.options).run(frame);

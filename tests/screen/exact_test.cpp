@@ -1,11 +1,11 @@
 // The exact method equals the oracle's surface integral.
 #include "dermis/oracle/compare.hpp"
+#include "dermis/oracle/materials.hpp"
 #include "dermis/oracle/scenes.hpp"
 #include "dermis/plan.hpp"
 #include "opencl/device.hpp"
 #include "support/catch.hpp"
 #include "support/compare_light.hpp"
-#include "support/oracle_material.hpp"
 
 using dermis::Camera;
 using dermis::Device;
@@ -22,7 +22,7 @@ TEST_CASE("the exact method equals the surface integral on the analytic scenes",
   const Profile burley = Profile::burley({1, 0.7, 0.4});
   for (const Profile& profile : {dermis::preset("skin").profile, burley.projected()}) {
     const std::vector<dermis::Material> materials = {{1, profile}, {2, Profile::burley_cycles({3, 6, 2})}};
-    const auto as_oracle = oracle_materials(materials, options.taps);
+    const auto as_oracle = dermis::oracle::materials_of(materials, options.taps);
     for (const oracle::SceneInfo& info : oracle::scenes()) {
       for (const auto projection : {Camera::Projection::perspective, Camera::Projection::orthographic}) {
         const oracle::Scene scene = oracle::scene(info.name, 45, 31, 3, projection);

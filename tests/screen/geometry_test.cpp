@@ -5,11 +5,11 @@
 #include <utility>
 #include <vector>
 
+#include "dermis/oracle/materials.hpp"
 #include "dermis/oracle/reference.hpp"
 #include "dermis/oracle/scenes.hpp"
 #include "dermis/plan.hpp"
 #include "support/catch.hpp"
-#include "support/oracle_material.hpp"
 #include "support/random_frame.hpp"
 
 namespace oracle = dermis::oracle;
@@ -195,7 +195,8 @@ TEST_CASE("planes and bowls that are tilted both ways equal the oracle within fl
           Plan(Device::open(), materials, FrameDescription::of(tilted.frame), options).run(tilted.frame);
       const auto of_class =
           std::string(of.block_class) == "flat" ? stats.pixels_flat : stats.pixels_scattered - stats.pixels_flat;
-      const auto expected = oracle::separable(tilted.frame, oracle_materials(materials, options.taps), options);
+      const auto expected =
+          oracle::separable(tilted.frame, dermis::oracle::materials_of(materials, options.taps), options);
       double worst = 0;  // of the bound
       double bound = 0;
       for (std::size_t i = 0; i < tilted.scattered.size(); ++i) {

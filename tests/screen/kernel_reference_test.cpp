@@ -1,8 +1,8 @@
 // Every kernel of the separable method equals the oracle with the same taps, on random frames, within the bound that
 // the oracle derives from float rounding.
+#include "dermis/oracle/materials.hpp"
 #include "dermis/plan.hpp"
 #include "support/catch.hpp"
-#include "support/oracle_material.hpp"
 #include "support/random_frame.hpp"
 #include "support/tally.hpp"
 
@@ -27,7 +27,7 @@ TEST_CASE("kernels equal the oracle within float rounding", "[kernels]") {
       UNSCOPED_INFO("model " << static_cast<int>(design.model) << ", rank " << design.rank << ", " << design.count
                              << " taps, placement " << static_cast<int>(design.placement));
     }
-    const auto materials = oracle_materials(random_frame.materials, random_frame.options.taps);
+    const auto materials = dermis::oracle::materials_of(random_frame.materials, random_frame.options.taps);
     const oracle::Reference expected = oracle::separable(frame, materials, random_frame.options);
 
     const Plan plan(device, random_frame.materials, FrameDescription::of(frame), random_frame.options);

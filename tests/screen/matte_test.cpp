@@ -4,11 +4,11 @@
 #include <vector>
 
 #include "dermis/oracle/compare.hpp"
+#include "dermis/oracle/materials.hpp"
 #include "dermis/oracle/scenes.hpp"
 #include "dermis/plan.hpp"
 #include "support/catch.hpp"
 #include "support/compare_light.hpp"
-#include "support/oracle_material.hpp"
 #include "support/random_frame.hpp"
 
 using dermis::Camera;
@@ -114,7 +114,7 @@ TEST_CASE("the exact method equals the surface integral where materials cover pi
   const dermis::oracle::Picture without = filtered();
   frame.matte.host = matte.data();
   const auto expected =
-      dermis::oracle::surface_integral(frame, oracle_materials(materials, options.taps), options).scattered;
+      dermis::oracle::surface_integral(frame, dermis::oracle::materials_of(materials, options.taps), options).scattered;
   // As without a matte, the error is that of the profile's tables.
   CHECK(dermis::oracle::compare(filtered(), expected).relative_l2 <= 1e-5);
   CHECK(dermis::oracle::compare(without, expected).relative_l2 > 1e-2);

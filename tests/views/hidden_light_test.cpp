@@ -5,11 +5,11 @@
 
 #include "closed_scene.hpp"
 #include "dermis/oracle/compare.hpp"
+#include "dermis/oracle/materials.hpp"
 #include "dermis/oracle/reference.hpp"
 #include "dermis/plan.hpp"
 #include "support/catch.hpp"
 #include "support/compare_light.hpp"
-#include "support/oracle_material.hpp"
 
 using dermis::Camera;
 using dermis::Device;
@@ -124,7 +124,7 @@ TEST_CASE("hidden light equals the sums of the oracle", "[views]") {
     shown.frame.mm_per_unit = random.uniform(0.7, 1.4);
     const std::vector<dermis::Material> materials = random_materials(random, crossing);
     const Options options{.method = Method::exact, .lighting = random.coin() ? Lighting::lit : Lighting::raw};
-    const auto as_oracle = oracle_materials(materials, options.taps);
+    const auto as_oracle = dermis::oracle::materials_of(materials, options.taps);
     const oracle::Reference seen = oracle::surface_integral(shown.frame, as_oracle, options);
     const oracle::HiddenLight hidden = oracle::hidden_light(shown.frame, as_oracle, options);
     CAPTURE(test_seed(), static_cast<int>(crossing), static_cast<int>(subject));
@@ -162,7 +162,7 @@ TEST_CASE("separable passes and discs join their light with hidden light by thei
   const std::vector<dermis::Material> materials =
       random_materials(random, random.coin() ? Crossing::projected : Crossing::distance);
   const Options options{.method = method};
-  const auto as_oracle = oracle_materials(materials, options.taps);
+  const auto as_oracle = dermis::oracle::materials_of(materials, options.taps);
   const oracle::Reference exact = oracle::surface_integral(shown.frame, as_oracle, options);
   const oracle::HiddenLight hidden = oracle::hidden_light(shown.frame, as_oracle, options);
   CAPTURE(test_seed(), static_cast<int>(method), static_cast<int>(subject), materials[0].profile.is_projected());
@@ -230,7 +230,7 @@ TEST_CASE("a sphere has its area and the whole of the profile, seen and hidden",
   const std::vector<dermis::Material> materials = {
       {1, Profile::burley({random.uniform(1, 4), random.uniform(1, 4), random.uniform(1, 4)})}};
   const Options options{.method = Method::exact};
-  const auto as_oracle = oracle_materials(materials, options.taps);
+  const auto as_oracle = dermis::oracle::materials_of(materials, options.taps);
   const oracle::Reference seen = oracle::surface_integral(shown.frame, as_oracle, options);
   const oracle::HiddenLight hidden = oracle::hidden_light(shown.frame, as_oracle, options);
   CAPTURE(test_seed(), static_cast<int>(place));

@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "dermis/dermis.hpp"
+#include "dermis/oracle/materials.hpp"
 #include "dermis/oracle/reference.hpp"
 #include "dermis/oracle/scenes.hpp"
-#include "dermis/tap_tables.hpp"
 #include "report/stopwatch.hpp"
 
 namespace dermis::program {
@@ -24,19 +24,6 @@ std::vector<Material> test_materials() {
   return {{1, preset("skin").profile}, {2, preset("marble").profile}, {3, preset("wax").profile}};
 }
 
-std::vector<oracle::Material> oracle_materials(const std::vector<Material>& materials, const TapsDesign& taps) {
-  std::vector<oracle::Material> result;
-  for (const Material& material : materials) {
-    const Profile& profile = material.profile;
-    result.push_back({.id = material.id,
-                      .albedo_width = profile.albedo_width(),
-                      .taps = make_taps(profile, taps),
-                      .radial = [profile](int c, double r_mm) { return profile.radial(c, r_mm); },
-                      .cdf = [profile](int c, double r_mm) { return profile.cdf(c, r_mm); }});
-  }
-  return result;
-}
-
 /// The largest error over what float32 may be off, of a scene filtered on a device.
 double worst_of(const Device& device, const oracle::Scene& scene, Method method, Oracle truth) {
   const std::vector<Material> materials = test_materials();
@@ -46,7 +33,7 @@ double worst_of(const Device& device, const oracle::Scene& scene, Method method,
   std::vector<float> scattered(scene.light.size());
   Frame frame = scene.frame();
   frame.scattered = {.host = scattered.data()};
-  const oracle::Reference expected = truth(frame, oracle_materials(materials, options.taps), options);
+  const oracle::Reference expected = truth(frame, oracle::materials_of(materials, options.taps), options);
   Plan(device, materials, FrameDescription::of(frame), options).run(frame);
   double worst = 0;
   for (std::size_t i = 0; i < scattered.size(); ++i) {

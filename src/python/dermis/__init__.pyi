@@ -1,3 +1,4 @@
+from . import oracle as oracle
 from typing import Callable, Mapping, Sequence, Union
 
 import numpy as np
