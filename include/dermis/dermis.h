@@ -92,7 +92,7 @@ typedef enum dermis_format {
 
 /* Where the values of an image lie. Strides in bytes; 0: packed, RGB side by side. */
 typedef struct dermis_layout {
-  dermis_format format;
+  int format; /* a dermis_format; another number is refused */
   ptrdiff_t channel_stride;
   ptrdiff_t pixel_stride;
   ptrdiff_t row_stride;
