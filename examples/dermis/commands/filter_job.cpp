@@ -105,19 +105,19 @@ Options options_of(const FilterArguments& arguments) {
 }
 
 /// Whether a report is a record of all pictures, in place of a page for each.
-bool is_record(const std::string& report) { return report.ends_with(".json"); }
+bool is_json(const std::string& report) { return report.ends_with(".json"); }
 
 /// The outputs, with the pages of a report.
 OutputArguments outputs_of(const FilterArguments& arguments) {
   OutputArguments output = arguments.output;
-  if (!is_record(arguments.report)) output.files.page = arguments.report;
+  if (!is_json(arguments.report)) output.files.page = arguments.report;
   return output;
 }
 
 /// The record of a call, or the page that lists its pictures. The tasks of a farm each have a part of them: they would
 /// take such a page from each other.
-std::string record_of(const std::string& report, const Shot& shot) {
-  if (is_record(report)) return report;
+std::string file_of_all(const std::string& report, const Shot& shot) {
+  if (is_json(report)) return report;
   if (!shot.is_sequence || shot.is_part || !std::filesystem::is_directory(report)) return {};
   return (std::filesystem::path(report) / "index.html").string();
 }
@@ -128,7 +128,7 @@ void check_report(const FilterArguments& arguments) {
   if (is_for_farm && arguments.output.files.stats_json == "-")
     throw Error(ErrorCode::usage, "--progress", fmt::format("{} with --stats-json -", name_of(arguments.progress)),
                 "only one of them on standard output");
-  if (!is_record(arguments.report)) return;
+  if (!is_json(arguments.report)) return;
   const OutputArguments& output = arguments.output;
   check_outputs({{"--output", output.files.output}, {"--stats-json", output.files.stats_json}},
                 {{"--report", arguments.report}});
@@ -202,7 +202,7 @@ FilterJob job_of(const FilterArguments& arguments) {
                 .device = arguments.device,
                 .command = {}};
   check_report(arguments);
-  job.report = record_of(arguments.report, job.shot);
+  job.report = file_of_all(arguments.report, job.shot);
   if (arguments.skips_existing && arguments.output.in_place)
     throw Error(ErrorCode::usage, "--skip-existing", "it with --in-place",
                 "results that do not take the place of what they are made from");
