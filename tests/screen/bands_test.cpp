@@ -133,6 +133,7 @@ TEST_CASE("bands have the bits of the whole", "[bands]") {
     CHECK(bits_of(frame.scattered, way) == scattered);
     CHECK(bits_of(frame.result, way) == result);
     CHECK(counts_of(stats) == counts_of(expected));
+    CHECK((stats.blocks.kinds == expected.blocks.kinds));
     CHECK(frame.scattered->guards_intact());
     most_bands = std::max(most_bands, stats.bands);
   }
