@@ -213,9 +213,10 @@ class Finding {
     return may_be_parallel(fit, *free_) && is_known(*fit) ? fit : std::nullopt;
   }
 
-  /// True if parallel rays show the points as well as another fit does.
+  /// True if parallel rays show the points as well as another fit does, and as many: a wall across the view, which is
+  /// most of a picture, looks the same through a lens, but what stands before it does not.
   bool may_be_parallel(const std::optional<Fit>& parallel, const Fit& other) const {
-    return is_good(parallel) && parallel->off_px <= as_good * other.off_px;
+    return is_good(parallel) && parallel->off_px <= as_good * other.off_px && as_good * parallel->share >= other.share;
   }
 
   /// True if a lens that was found with depths might be parallel rays, to which depths say nothing, and that would

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "dermis/exr.hpp"
+#include "dermis/oracle/scenes.hpp"
 #include "support/catch.hpp"
 #include "support/failure.hpp"
 #include "support/random.hpp"
@@ -253,6 +254,27 @@ TEST_CASE("positions without depth give the camera and the depth") {
     REQUIRE(told.warnings.back().find("--focal-px says") == 0);
     REQUIRE(dermis::exr::load_depth(picture, roles, told) == depth);
     if (is_lens) REQUIRE(find_camera(picture, roles, {.focal_px = found.camera.scale_x}).warnings == found.warnings);
+  }
+}
+
+TEST_CASE("a wall across the view does not hide what stands before it") {
+  // Most pixels are of the wall, which parallel rays would show as well.
+  for (int width = 60; width <= 150; width += 15) {
+    for (int height = 40; height <= 100; height += 12) {
+      CAPTURE(width, height);
+      const dermis::oracle::Scene scene = dermis::oracle::scene("sphere", width, height, 3);
+      const dermis::exr::Window window{0, 0, width, height};
+      Picture picture(window, window);
+      const Names position = {"Position.X", "Position.Y", "Position.Z"};
+      const Names depth = {"Depth.Z"};
+      for (const Names* names : {&position, &depth}) picture.add_channels(*names, Format::f32);
+      picture.store(position, scene.position);
+      picture.store(depth, scene.depth);
+      const FoundCamera found = find_camera(picture, dermis::exr::find_roles(picture));
+      require_near(found.camera, scene.camera, tolerance);
+      REQUIRE(found.source == "position and depth");
+      REQUIRE(found.warnings.empty());
+    }
   }
 }
 
