@@ -159,6 +159,14 @@ TEST_CASE("a sequence has a page for each picture and one that leads to them") {
   CHECK(fs::exists(folder / "pages/shot.1.html"));
   CHECK_FALSE(fs::exists(folder / "pages/shot.2.html"));
 
+  // The list takes the place of no page.
+  fs::copy_file(folder / "shot.1.exr", folder / "index.exr");
+  std::vector<std::string> words{"filter",         folder / "index.exr", folder / "shot.3.exr", "-o",
+                                 folder / "pages", "--profile",          "burley:0.5/0.4/0.3",  "--report",
+                                 folder / "pages"};
+  words.insert(words.end(), scene.camera.begin(), scene.camera.end());
+  check_refused(run_program(words), 2, {"--report: got", "index.html for", "other names"});
+
   // A page that has gone is made again with its picture; a task of a farm writes no list.
   fs::remove(folder / "pages/shot.3.html");
   fs::remove(folder / "pages/index.html");

@@ -163,6 +163,14 @@ void add_input_and_output(CLI::App& app, OutputArguments& arguments) {
   add_in_place_argument(app, arguments.in_place);
 }
 
+void add_input_and_sheet(CLI::App& app, std::string& input, std::string& sheet) {
+  app.add_option("file", input, "the OpenEXR file to read")->required()->type_name("FILE");
+  app.add_option("-o,--output", sheet, "the picture to draw; needs gnuplot")
+      ->required()
+      ->check(file_name_ending({".png"}))
+      ->type_name("SHEET.png");
+}
+
 void add_shot_arguments(CLI::App& app, OutputArguments& arguments) {
   add_frames_arguments(app, arguments.frames);
   app.add_flag("--keep-going,!--no-keep-going", arguments.keeps_going,

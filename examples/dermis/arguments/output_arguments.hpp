@@ -63,6 +63,9 @@ struct Shot {
 /// Adds the positional FILEs, -o and --in-place.
 void add_input_and_output(CLI::App& app, OutputArguments& arguments);
 
+/// Adds the positional FILE, and -o for a sheet that is drawn from it.
+void add_input_and_sheet(CLI::App& app, std::string& input, std::string& sheet);
+
 /// Adds --frames, --chunk and --keep-going.
 void add_shot_arguments(CLI::App& app, OutputArguments& arguments);
 

@@ -14,7 +14,7 @@
 #include "arguments/help.hpp"
 #include "arguments/message_arguments.hpp"
 #include "arguments/number_argument.hpp"
-#include "arguments/word_argument.hpp"
+#include "arguments/output_arguments.hpp"
 #include "commands/commands.hpp"
 #include "commands/input_report.hpp"
 #include "commands/surface_input.hpp"
@@ -153,11 +153,7 @@ int run_compare_methods(const CompareMethodsArguments& arguments) {
 void add_compare_methods_arguments(CLI::App& app, CompareMethodsArguments& arguments) {
   {
     const HelpGroup group(app, "Usual options");
-    app.add_option("file", arguments.input, "the OpenEXR file to read")->required()->type_name("FILE");
-    app.add_option("-o,--output", arguments.output, "the picture to draw; needs gnuplot")
-        ->required()
-        ->check(file_name_ending({".png"}))
-        ->type_name("SHEET.png");
+    add_input_and_sheet(app, arguments.input, arguments.output);
     add_scale_argument(app, arguments.surface.picture);
     add_material_arguments(app, arguments.surface.materials);
     app.add_option("--truth", arguments.truth, "a picture to show beside them, for instance the same view path-traced")

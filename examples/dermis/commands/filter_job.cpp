@@ -203,6 +203,10 @@ FilterJob job_of(const FilterArguments& arguments) {
                 .command = {}};
   check_report(arguments);
   job.report = file_of_all(arguments.report, job.shot);
+  for (const PictureFiles& picture : job.shot.pictures)
+    if (!job.report.empty() && picture.outputs.page == job.report)
+      throw Error(ErrorCode::usage, "--report", fmt::format("{} for {}", job.report, picture.input.path),
+                  "inputs of other names, for that page lists all pictures");
   if (arguments.skips_existing && arguments.output.in_place)
     throw Error(ErrorCode::usage, "--skip-existing", "it with --in-place",
                 "results that do not take the place of what they are made from");

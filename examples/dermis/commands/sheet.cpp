@@ -13,9 +13,9 @@
 #include "arguments/help.hpp"
 #include "arguments/message_arguments.hpp"
 #include "arguments/number_argument.hpp"
+#include "arguments/output_arguments.hpp"
 #include "arguments/profile_argument.hpp"
 #include "arguments/quality_arguments.hpp"
-#include "arguments/word_argument.hpp"
 #include "commands/commands.hpp"
 #include "commands/input_report.hpp"
 #include "commands/surface_input.hpp"
@@ -138,11 +138,7 @@ int run_sheet(const SheetArguments& arguments) {
 void add_sheet_arguments(CLI::App& app, SheetArguments& arguments) {
   {
     const HelpGroup group(app, "Usual options");
-    app.add_option("file", arguments.input, "the OpenEXR file to read")->required()->type_name("FILE");
-    app.add_option("-o,--output", arguments.output, "the picture to draw; needs gnuplot")
-        ->required()
-        ->check(file_name_ending({".png"}))
-        ->type_name("SHEET.png");
+    add_input_and_sheet(app, arguments.input, arguments.output);
     add_scale_argument(app, arguments.surface.picture);
     add_material_arguments(app, arguments.surface.materials);
     add_quality_argument(app, arguments.quality);
